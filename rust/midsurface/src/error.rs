@@ -1,0 +1,82 @@
+//! What can go wrong, each with a message a user can act on.
+
+/// Why a call has no result.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The buffer is not as long as the dimensions say.
+    #[error("the volume is said to have {dimensions:?} voxels, but its array holds {length} values")]
+    BufferLength {
+        /// Claimed number of voxels along x, y, z.
+        dimensions: [usize; 3],
+        /// Number of scalars in the buffer.
+        length: usize,
+    },
+    /// The number of voxels does not fit into an index.
+    #[error("the volume's dimensions {0:?} are too large to be indexed")]
+    Dimensions([usize; 3]),
+    /// Spacing must be a positive, finite length.
+    #[error("the spacing {0:?} is not usable: every axis needs a positive, finite spacing (set it in the image's properties)")]
+    Spacing([f64; 3]),
+    /// Origin or direction hold values that are no numbers, or the direction is singular.
+    #[error("the image's {0} is not usable: it must be finite, and a direction matrix must not be singular")]
+    Placement(&'static str),
+    /// Floating point scalars that are not whole numbers.
+    #[error("the array holds {value} at voxel {voxel:?}, but labels are whole numbers: choose a segmentation, not an image or a probability map")]
+    NotALabel {
+        /// The offending value, printed.
+        value: String,
+        /// Its index along x, y, z, counted from the first voxel.
+        voxel: [usize; 3],
+    },
+    /// So many labels that it cannot be a segmentation.
+    #[error("the array holds more than {limit} distinct values: it looks like a raw tomogram, not a segmentation")]
+    TooManyLabels {
+        /// The largest number of labels that is accepted.
+        limit: usize,
+    },
+    /// So many runs that it cannot be a segmentation of thin slabs.
+    #[error("the array changes its value almost from voxel to voxel ({labels} distinct values): it looks like a raw tomogram, not a segmentation")]
+    NotASegmentation {
+        /// Number of distinct labels met.
+        labels: usize,
+    },
+    /// None of the labels asked for is in the volume.
+    #[error("none of the labels asked for ({asked}) is in the volume; it has {present}")]
+    LabelsAbsent {
+        /// The labels asked for.
+        asked: String,
+        /// The labels present.
+        present: String,
+    },
+    /// Polylines that cannot be zipped.
+    #[error("the polylines cannot be joined: {0}")]
+    Polylines(String),
+    /// Memory was refused.
+    #[error("not enough memory: {0} bytes more were refused")]
+    OutOfMemory(usize),
+    /// The thread pool could not be made.
+    #[error("the worker threads could not be started: {0}")]
+    Threads(String),
+    /// The observer asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// A result with this crate's [`Error`].
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// An empty vector with room for `length` elements, or an error where memory is refused.
+pub(crate) fn reserved<T>(length: usize) -> Result<Vec<T>> {
+    let mut buffer = Vec::new();
+    buffer
+        .try_reserve_exact(length)
+        .map_err(|_| Error::OutOfMemory(length.saturating_mul(std::mem::size_of::<T>())))?;
+    Ok(buffer)
+}
+
+/// A vector of `length` copies of `value`, or an error where memory is refused.
+pub(crate) fn filled<T: Clone>(length: usize, value: T) -> Result<Vec<T>> {
+    let mut buffer = reserved(length)?;
+    buffer.resize(length, value);
+    Ok(buffer)
+}

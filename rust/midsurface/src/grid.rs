@@ -1,0 +1,131 @@
+//! Where the voxels lie: the image's frame, and the frame the work is done in.
+//!
+//! Three frames are in use. *Voxel*: integer index along x, y, z from the first voxel of the
+//! buffer. *Work*: voxel index times normalised spacing, in units of the finest spacing, so that
+//! the same voxels in other units give the same numbers. *World*: the user's coordinates,
+//! `origin + direction · (spacing ∘ (extent_start + voxel))`.
+
+use crate::error::{Error, Result};
+
+/// A point or vector, x, y, z.
+pub type Vec3 = [f64; 3];
+
+/// The geometry of a regular volume. All arrays are in the order x, y, z.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Number of voxels along each axis.
+    pub dimensions: [usize; 3],
+    /// Index of the first voxel in the image's extent (0 for most images).
+    pub extent_start: [i64; 3],
+    /// Distance between voxel centres along each axis, world units.
+    pub spacing: Vec3,
+    /// World coordinates of the voxel with extent index (0, 0, 0).
+    pub origin: Vec3,
+    /// Row-major 3×3 matrix whose columns are the image axes in world coordinates.
+    pub direction: [Vec3; 3],
+}
+
+impl Grid {
+    /// A grid at the origin with spacing 1, axes along the world's.
+    pub fn new(dimensions: [usize; 3]) -> Self {
+        Self {
+            dimensions,
+            extent_start: [0; 3],
+            spacing: [1.0; 3],
+            origin: [0.0; 3],
+            direction: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        }
+    }
+
+    /// Checks that every figure is usable, and that the voxels can be counted.
+    pub fn check(&self) -> Result<()> {
+        self.voxel_count()?;
+        if !self.spacing.iter().all(|s| s.is_finite() && *s > 0.0) {
+            return Err(Error::Spacing(self.spacing));
+        }
+        if !self.origin.iter().all(|v| v.is_finite()) {
+            return Err(Error::Placement("origin"));
+        }
+        let d = &self.direction;
+        let determinant = dot(d[0], cross(d[1], d[2]));
+        if !(determinant.is_finite() && determinant.abs() > 1e-9) {
+            return Err(Error::Placement("direction"));
+        }
+        Ok(())
+    }
+
+    /// Number of voxels, or an error where it does not fit into an index.
+    pub fn voxel_count(&self) -> Result<usize> {
+        let [x, y, z] = self.dimensions;
+        x.checked_mul(y)
+            .and_then(|n| n.checked_mul(z))
+            .filter(|&n| n < isize::MAX as usize)
+            .filter(|_| [x, y, z].iter().all(|&n| n < u32::MAX as usize / 2))
+            .ok_or(Error::Dimensions(self.dimensions))
+    }
+
+    /// The finest spacing, world units: the length of one work unit.
+    pub fn unit(&self) -> f64 {
+        self.spacing.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Spacing in work units. Rounded to nine digits, so that a change of units, which may cost a
+    /// last bit, cannot change a decision further down.
+    pub fn work_spacing(&self) -> Vec3 {
+        let unit = self.unit();
+        self.spacing.map(|s| (s / unit * 1e9).round() / 1e9)
+    }
+
+    /// World coordinates of a point given as a continuous voxel index.
+    pub fn world(&self, voxel: Vec3) -> Vec3 {
+        let local: Vec3 = std::array::from_fn(|a| {
+            self.spacing[a] * (self.extent_start[a] as f64 + voxel[a])
+        });
+        std::array::from_fn(|r| self.origin[r] + dot(self.direction[r], local))
+    }
+}
+
+/// a · b.
+pub fn dot(a: Vec3, b: Vec3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// a × b.
+pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// a − b.
+pub fn sub(a: Vec3, b: Vec3) -> Vec3 {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// a + t b.
+pub fn along(a: Vec3, t: f64, b: Vec3) -> Vec3 {
+    [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]]
+}
+
+/// Length of a.
+pub fn length(a: Vec3) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Squared distance between two points.
+pub fn squared_distance(a: Vec3, b: Vec3) -> f64 {
+    let d = sub(a, b);
+    dot(d, d)
+}
+
+/// a scaled to length 1; zero stays zero.
+pub fn unit(a: Vec3) -> Vec3 {
+    let l = length(a);
+    if l > 0.0 {
+        a.map(|v| v / l)
+    } else {
+        a
+    }
+}
