@@ -1,0 +1,137 @@
+//! The mesh, and the run that makes it from a volume.
+
+use midsurface::Mesh;
+
+use crate::arguments::{address, collected, free, object, Output};
+use crate::error::{guarded, guarded_value, midsurface_error, midsurface_status};
+use crate::options::{self, midsurface_options};
+use crate::volume::{self, midsurface_volume};
+
+/// A triangle mesh: a 2-manifold with boundary, consistently wound in each component. Freed with
+/// midsurface_mesh_free.
+#[derive(Debug)]
+pub struct midsurface_mesh {
+    mesh: Mesh,
+    /// Indices as C takes them.
+    triangles: Vec<[i64; 3]>,
+    components: Vec<i64>,
+}
+
+impl midsurface_mesh {
+    pub(crate) fn new(mesh: Mesh) -> Result<Self, midsurface_error> {
+        // C reads as many values as the view says: arrays that are shorter must not get there.
+        assert_eq!(mesh.normals.len(), mesh.points.len());
+        assert_eq!(mesh.thickness.len(), mesh.points.len());
+        assert_eq!(mesh.labels.len(), mesh.triangles.len());
+        assert_eq!(mesh.components.len(), mesh.triangles.len());
+        let triangles = mesh.triangles.iter().map(|t| t.map(i64::from));
+        let components = mesh.components.iter().copied().map(i64::from);
+        Ok(Self {
+            triangles: collected(mesh.triangles.len(), triangles)?,
+            components: collected(mesh.components.len(), components)?,
+            mesh,
+        })
+    }
+}
+
+/// The arrays of a mesh: a view into it, valid until it is freed. Arrays of length 0 are NULL.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct midsurface_mesh_arrays {
+    /// World coordinates, x y z: 3 * point_count values.
+    pub points: *const f32,
+    /// Number of points.
+    pub point_count: usize,
+    /// Unit normals of the points, x y z: 3 * point_count values. They agree with the winding:
+    /// seen from the side they point to, a triangle's corners run counter-clockwise.
+    pub normals: *const f32,
+    /// Local thickness at the points, in the unit of the spacing: point_count values.
+    pub thickness: *const f32,
+    /// Point indices, three a triangle: 3 * triangle_count values.
+    pub triangles: *const i64,
+    /// Number of triangles.
+    pub triangle_count: usize,
+    /// Label of each triangle: triangle_count values.
+    pub labels: *const i64,
+    /// Component of each triangle: the label's 26-connected component, from 0, ordered by label,
+    /// then by size, the largest first; triangle_count values.
+    pub components: *const i64,
+}
+
+impl midsurface_mesh_arrays {
+    const EMPTY: Self = Self {
+        points: std::ptr::null(),
+        point_count: 0,
+        normals: std::ptr::null(),
+        thickness: std::ptr::null(),
+        triangles: std::ptr::null(),
+        triangle_count: 0,
+        labels: std::ptr::null(),
+        components: std::ptr::null(),
+    };
+}
+
+/// Extracts the mid-surface of a label volume. A volume without labels gives an empty mesh and a
+/// warning.
+///
+/// volume, options: as described there.
+/// out: where the new mesh goes.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_extract(
+    volume: *const midsurface_volume,
+    options: *const midsurface_options,
+    out: *mut *mut midsurface_mesh,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        guarded(error, || {
+            let out = Output::handle(out)?;
+            let (volume, _) = volume::read(volume)?;
+            let (options, mut callbacks) = options::read(options)?;
+            let mesh = midsurface::extract(&volume, &options, &mut callbacks)?;
+            out.set_object(midsurface_mesh::new(mesh)?);
+            Ok(())
+        })
+    }
+}
+
+/// Shows the arrays of a mesh. Nothing is copied.
+///
+/// mesh: the mesh.
+/// out: where the view goes.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_mesh_view(
+    mesh: *const midsurface_mesh,
+    out: *mut midsurface_mesh_arrays,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        guarded(error, || {
+            let out = Output::new(out, midsurface_mesh_arrays::EMPTY, "out")?;
+            let handle = object(mesh, "mesh")?;
+            let mesh = &handle.mesh;
+            out.set(midsurface_mesh_arrays {
+                points: address(mesh.points.as_flattened()),
+                point_count: mesh.points.len(),
+                normals: address(mesh.normals.as_flattened()),
+                thickness: address(&mesh.thickness),
+                triangles: address(handle.triangles.as_flattened()),
+                triangle_count: mesh.triangles.len(),
+                labels: address(&mesh.labels),
+                components: address(&handle.components),
+            });
+            Ok(())
+        })
+    }
+}
+
+/// Frees a mesh. NULL is ignored.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_mesh_free(mesh: *mut midsurface_mesh) {
+    // SAFETY: null, or a mesh of this library that nobody uses any more.
+    guarded_value((), || unsafe { free(mesh) });
+}

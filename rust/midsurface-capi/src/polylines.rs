@@ -1,0 +1,174 @@
+//! Mid-polylines: out of a volume, in and out as arrays, and zipped to a mesh.
+
+use midsurface::{Polyline, Polylines};
+
+use crate::arguments::{address, collected, free, object, Output};
+use crate::error::{guarded, guarded_value, midsurface_error, midsurface_status};
+use crate::mesh::midsurface_mesh;
+use crate::options::{self, midsurface_options};
+use crate::polyline_arrays::{self, midsurface_polyline_arrays};
+use crate::volume::{self, midsurface_volume};
+
+/// Polylines in the slices of a volume. Freed with midsurface_polylines_free.
+#[derive(Debug)]
+pub struct midsurface_polylines {
+    polylines: Polylines,
+    /// The lines' fields, an array each, as C takes them.
+    offsets: Vec<i64>,
+    connectivity: Vec<i64>,
+    labels: Vec<i64>,
+    components: Vec<i64>,
+    slices: Vec<i64>,
+}
+
+impl midsurface_polylines {
+    fn new(polylines: Polylines) -> Result<Self, midsurface_error> {
+        let lines = &polylines.lines;
+        // C reads as many values as the view says: arrays that are shorter must not get there.
+        assert_eq!(polylines.thickness.len(), polylines.points.len());
+        let point_count = polylines.points.len();
+        assert!(lines
+            .iter()
+            .all(|l| l.first <= point_count && l.count <= point_count - l.first));
+
+        let entries = |line: &Polyline| line.count + usize::from(line.closed);
+        let mut end = 0;
+        let ends = lines.iter().map(|line| {
+            end += entries(line);
+            end as i64
+        });
+        Ok(Self {
+            offsets: collected(lines.len() + 1, std::iter::once(0).chain(ends))?,
+            connectivity: collected(
+                lines.iter().map(entries).sum(),
+                lines.iter().flat_map(|line| {
+                    let first = line.first as i64;
+                    let closing = line.closed.then_some(first);
+                    (first..first + line.count as i64).chain(closing)
+                }),
+            )?,
+            labels: collected(lines.len(), lines.iter().map(|line| line.label))?,
+            components: collected(lines.len(), lines.iter().map(|line| line.component.into()))?,
+            slices: collected(lines.len(), lines.iter().map(|line| line.slice))?,
+            polylines,
+        })
+    }
+
+    fn arrays(&self) -> midsurface_polyline_arrays {
+        midsurface_polyline_arrays {
+            points: address(self.polylines.points.as_flattened()),
+            point_count: self.polylines.points.len(),
+            thickness: address(&self.polylines.thickness),
+            offsets: address(&self.offsets),
+            line_count: self.polylines.lines.len(),
+            connectivity: address(&self.connectivity),
+            connectivity_length: self.connectivity.len(),
+            labels: address(&self.labels),
+            components: address(&self.components),
+            slices: address(&self.slices),
+        }
+    }
+}
+
+/// Traces the mid-polylines of a label volume: the mid-surface's lines in every slice along z.
+/// midsurface_zip makes midsurface_extract's mesh of them.
+///
+/// volume, options: as described there.
+/// out: where the new polylines go.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_extract_polylines(
+    volume: *const midsurface_volume,
+    options: *const midsurface_options,
+    out: *mut *mut midsurface_polylines,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        guarded(error, || {
+            let out = Output::handle(out)?;
+            let (volume, _) = volume::read(volume)?;
+            let (options, mut callbacks) = options::read(options)?;
+            let polylines = midsurface::mid_polylines(&volume, &options, &mut callbacks)?;
+            out.set_object(midsurface_polylines::new(polylines)?);
+            Ok(())
+        })
+    }
+}
+
+/// Makes polylines of arrays. The arrays are copied, a point as often as lines use it, and every
+/// offset and index is checked, and that coordinates and thickness are finite.
+///
+/// arrays: the polylines, as described there.
+/// out: where the new polylines go.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_polylines_new(
+    arrays: *const midsurface_polyline_arrays,
+    out: *mut *mut midsurface_polylines,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        guarded(error, || {
+            let out = Output::handle(out)?;
+            let polylines = polyline_arrays::read(arrays)?;
+            out.set_object(midsurface_polylines::new(polylines)?);
+            Ok(())
+        })
+    }
+}
+
+/// Shows the arrays of polylines. Nothing is copied.
+///
+/// polylines: the polylines.
+/// out: where the view goes.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_polylines_arrays(
+    polylines: *const midsurface_polylines,
+    out: *mut midsurface_polyline_arrays,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        guarded(error, || {
+            let out = Output::new(out, midsurface_polyline_arrays::EMPTY, "out")?;
+            out.set(object(polylines, "polylines")?.arrays());
+            Ok(())
+        })
+    }
+}
+
+/// Frees polylines. NULL is ignored.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_polylines_free(polylines: *mut midsurface_polylines) {
+    // SAFETY: null, or polylines of this library that nobody uses any more.
+    guarded_value((), || unsafe { free(polylines) });
+}
+
+/// Joins the polylines of neighbouring slices to a mesh.
+///
+/// polylines: the polylines; they stay as they are.
+/// options: as described there; labels may choose among those of the lines.
+/// out: where the new mesh goes.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_zip(
+    polylines: *const midsurface_polylines,
+    options: *const midsurface_options,
+    out: *mut *mut midsurface_mesh,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        guarded(error, || {
+            let out = Output::handle(out)?;
+            let polylines = &object(polylines, "polylines")?.polylines;
+            let (options, mut callbacks) = options::read(options)?;
+            let mesh = midsurface::zip_polylines(polylines, &options, &mut callbacks)?;
+            out.set_object(midsurface_mesh::new(mesh)?);
+            Ok(())
+        })
+    }
+}
