@@ -197,28 +197,43 @@ fn gyroid(p: Vec3, centre: Vec3, k: f64) -> (f64, Vec3) {
     (sx * cy + sy * cz + sz * cx, scale(k, gradient))
 }
 
-/// Alternates between falling onto the surface and sliding along it towards p.
+/// The nearest point found while alternating between falling onto the surface and sliding along
+/// it towards p. Exact near the surface; half-way between two sheets it may name the farther one.
 fn closest_on_gyroid(p: Vec3, centre: Vec3, k: f64) -> Closest {
-    let mut point = p;
+    let mut point = fall_onto_gyroid(p, centre, k);
+    let mut best = point;
     for _ in 0..12 {
-        for _ in 0..3 {
-            let (value, gradient) = gyroid(point, centre, k);
-            let squared = dot(gradient, gradient).max(0.05 * k * k);
-            point = sub(point, scale(value / squared, gradient));
-        }
         let normal = unit(gyroid(point, centre, k).1);
         let away = sub(p, point);
         let slide = sub(away, scale(dot(away, normal), normal));
         if length(slide) < 1e-6 / k {
             break;
         }
-        point = add(point, slide);
+        let step = (0.4 / k / length(slide)).min(1.0);
+        point = fall_onto_gyroid(add(point, scale(step, slide)), centre, k);
+        if length(sub(p, point)) < length(sub(p, best)) {
+            best = point;
+        }
     }
-    let distance = length(sub(p, point));
+    let distance = length(sub(p, best));
     Closest {
-        point,
+        point: best,
         distance,
         offset: distance.copysign(gyroid(p, centre, k).0),
         within_rim: true,
     }
+}
+
+/// Newton's method along the gradient, in steps short enough not to jump to another sheet.
+fn fall_onto_gyroid(mut point: Vec3, centre: Vec3, k: f64) -> Vec3 {
+    for _ in 0..30 {
+        let (value, gradient) = gyroid(point, centre, k);
+        if value.abs() < 1e-9 {
+            break;
+        }
+        let longest = 0.3 / k;
+        let step = (value / length(gradient)).clamp(-longest, longest);
+        point = sub(point, scale(step, unit(gradient)));
+    }
+    point
 }
