@@ -6,14 +6,18 @@
 #![forbid(unsafe_code)]
 
 mod catalogue;
+mod image_file;
 mod judge;
+mod mitochondrion;
 mod phantom;
 mod shape;
 mod topology;
 mod vector;
 
 pub use catalogue::*;
+pub use image_file::{write_mrc, write_vti};
 pub use judge::{distance_to_triangle, judge, Report};
+pub use mitochondrion::{mitochondrion, INNER, OUTER};
 pub use phantom::{flip_boundary, Frame, Phantom, Slab, Thickness, Topology};
 pub use shape::{Closest, Hole, Rim, Shape};
 pub use topology::{connectivity, Connectivity};
