@@ -31,3 +31,127 @@ impl Observer for Quiet {
         self.warnings.push(message.to_owned());
     }
 }
+
+/// How long a batch should take, seconds: short enough to report and to cancel between them.
+const BATCH_SECONDS: f64 = 0.05;
+
+/// A pool and an observer for one run.
+pub(crate) struct Execution<'a> {
+    pool: ThreadPool,
+    observer: &'a mut dyn Observer,
+    stage: &'static str,
+    from: f64,
+    to: f64,
+}
+
+impl<'a> Execution<'a> {
+    /// Starts `threads` workers (0: one a core).
+    pub fn new(threads: usize, observer: &'a mut dyn Observer) -> Result<Self> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.min(1024))
+            .thread_name(|i| format!("midsurface-{i}"))
+            .build()
+            .map_err(|error| Error::Threads(error.to_string()))?;
+        Ok(Self {
+            pool,
+            observer,
+            stage: "",
+            from: 0.0,
+            to: 0.0,
+        })
+    }
+
+    /// Announces the next stage, which takes the run's progress from `from` to `to`.
+    pub fn stage(&mut self, stage: &'static str, from: f64, to: f64) -> Result<()> {
+        (self.stage, self.from, self.to) = (stage, from, to);
+        self.report(0.0)
+    }
+
+    /// Tells the observer how much of the stage is done.
+    pub fn report(&mut self, share: f64) -> Result<()> {
+        let fraction = self.from + (self.to - self.from) * share;
+        if self.observer.progress(fraction.clamp(0.0, 1.0), self.stage) {
+            Ok(())
+        } else {
+            Err(Error::Cancelled)
+        }
+    }
+
+    /// Passes a warning on.
+    pub fn warning(&mut self, message: &str) {
+        self.observer.warning(message);
+    }
+
+    /// `f` of every item, in the items' order.
+    pub fn map<T: Sync, R: Send>(
+        &mut self,
+        items: &[T],
+        f: impl Fn(&T) -> R + Sync,
+    ) -> Result<Vec<R>> {
+        let mut results = crate::error::reserved(items.len())?;
+        self.batches(items.len(), |pool, range| {
+            let batch: Vec<R> = pool.install(|| items[range].par_iter().map(&f).collect());
+            results.extend(batch);
+            Ok(())
+        })?;
+        Ok(results)
+    }
+
+    /// As [`Self::map`], with `keep` taking the results of each batch on the calling thread.
+    pub fn stream<T: Sync, R: Send>(
+        &mut self,
+        items: &[T],
+        f: impl Fn(&T) -> R + Sync,
+        mut keep: impl FnMut(R) -> Result<()>,
+    ) -> Result<()> {
+        self.batches(items.len(), |pool, range| {
+            let batch: Vec<R> = pool.install(|| items[range].par_iter().map(&f).collect());
+            batch.into_iter().try_for_each(&mut keep)
+        })
+    }
+
+    /// Lets `f` fill `buffer` in pieces of `size`, each given its index.
+    pub fn fill<T: Send>(
+        &mut self,
+        buffer: &mut [T],
+        size: usize,
+        f: impl Fn(usize, &mut [T]) + Sync,
+    ) -> Result<()> {
+        let pieces = buffer.len().div_ceil(size);
+        self.batches(pieces, |pool, range| {
+            let end = (range.end * size).min(buffer.len());
+            let batch = &mut buffer[range.start * size..end];
+            pool.install(|| {
+                batch
+                    .par_chunks_mut(size)
+                    .enumerate()
+                    .for_each(|(i, piece)| f(range.start + i, piece))
+            });
+            Ok(())
+        })
+    }
+
+    /// Runs `work` on consecutive ranges whose length adapts to [`BATCH_SECONDS`].
+    fn batches(
+        &mut self,
+        count: usize,
+        mut work: impl FnMut(&ThreadPool, std::ops::Range<usize>) -> Result<()>,
+    ) -> Result<()> {
+        let threads = self.pool.current_num_threads();
+        let (mut start, mut size) = (0, threads * 4);
+        while start < count {
+            let end = (start + size).min(count);
+            let clock = std::time::Instant::now();
+            work(&self.pool, start..end)?;
+            let seconds = clock.elapsed().as_secs_f64();
+            if seconds < BATCH_SECONDS / 2.0 {
+                size *= 2;
+            } else if seconds > BATCH_SECONDS {
+                size = (size / 2).max(threads);
+            }
+            start = end;
+            self.report(end as f64 / count as f64)?;
+        }
+        Ok(())
+    }
+}

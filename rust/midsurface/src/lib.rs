@@ -1,19 +1,62 @@
-//! Mid-surfaces of thin labelled slabs.
+//! Mid-surfaces of thin labelled slabs in segmented volumes.
+//!
+//! A cell membrane in a segmented tomogram is a slab of labelled voxels, 2 to 15 thick. This crate
+//! finds the surface midway between its two faces, as a triangle mesh, by the method of Boneš et
+//! al., "MidSurfer: A Parameter-Free Approach for Mid-Surface Extraction from Segmented Volumetric
+//! Data" (arXiv 2405.19339). Data flows one way, a stage is a file:
+//!
+//! | stage | from → to | file |
+//! | --- | --- | --- |
+//! | scan | volume → runs of labelled voxels, the only pass over the input | `runs.rs` |
+//! | parts | runs → connected parts, each with its label and component | `components.rs` |
+//! | distance | parts → distance to the outside, in sparse bricks (`bricks.rs`) | `distance.rs` |
+//! | ridge field | distance → a smooth field whose crest is the mid-surface | `ridge.rs` |
+//! | polylines | ridge field → a line midway through every slice (`slice.rs`, `trace.rs`) | `polylines.rs` |
+//! | zipper | polylines → strips of triangles between slices (`strip.rs`) | `zipper.rs` |
+//! | mesh | triangles → 2-manifold (`manifold.rs`), better triangles (`flips.rs`), normals | `mesh.rs` |
+//!
+//! Arrays are in the order x, y, z, volumes have shape (z, y, x) with x fastest. Lengths inside
+//! are in units of the finest spacing, so that the same voxels in other units give the same mesh;
+//! `grid.rs` tells the frames. Everything between scan and polylines happens in batches of whole
+//! components, so that memory follows the largest batch, and depends on places in the volume
+//! only, never on the order of work: any number of threads gives the same mesh.
 #![forbid(unsafe_code)]
 
+mod bricks;
+mod components;
+mod distance;
 mod error;
 mod execution;
+mod flips;
 mod grid;
+mod halfedge;
+mod interpolation;
+mod manifold;
 mod mesh;
 mod polylines;
+mod quality;
+mod ridge;
+mod runs;
+mod slice;
+mod strip;
+mod thickness;
+mod trace;
 mod volume;
+mod zipper;
 
+use std::collections::BTreeSet;
+
+use ndarray::ArrayViewMut3;
+
+use bricks::Batch;
+use components::{parts, Part};
+use execution::Execution;
 pub use error::{Error, Result};
 pub use execution::{Observer, Quiet};
 pub use grid::{Grid, Vec3};
-pub use mesh::Mesh;
-use ndarray::ArrayViewMut3;
+pub use mesh::{InvariantViolation, Mesh};
 pub use polylines::{Polyline, Polylines};
+pub use quality::Quality;
 pub use volume::{Label, Scalars, Volume};
 
 /// How the mid-surface is found.
@@ -35,33 +78,230 @@ pub struct Options {
     pub threads: usize,
 }
 
-/// The distinct labels of a volume, ascending, background left out.
-pub fn find_labels(_volume: &Volume, _options: &Options, _observer: &mut dyn Observer) -> Result<Vec<i64>> {
-    Ok(Vec::new())
+/// The mid-surface of the labels as a triangle mesh.
+///
+/// # Errors
+/// Where the scalars are no segmentation, none of the labels asked for is there, memory is
+/// refused, or the observer cancels.
+pub fn extract(volume: &Volume, options: &Options, observer: &mut dyn Observer) -> Result<Mesh> {
+    match options.method {
+        Method::PolylineZipper => {
+            let mut execution = Execution::new(options.threads, observer)?;
+            let polylines = trace_polylines(volume, options, &mut execution, 0.7)?;
+            zip(&polylines, &mut execution, 0.7)
+        }
+    }
 }
 
-/// Distance and ridge field, written into the caller's arrays of the volume's shape.
+/// The distinct labels of a volume, ascending; 0 is background.
+///
+/// # Errors
+/// As [`extract`].
+pub fn find_labels(
+    volume: &Volume,
+    options: &Options,
+    observer: &mut dyn Observer,
+) -> Result<Vec<i64>> {
+    let mut execution = Execution::new(options.threads, observer)?;
+    execution.stage("Finding labels", 0.0, 1.0)?;
+    let scan = runs::scan(volume, &mut execution, |_| false)?;
+    Ok(scan.labels.into_iter().collect())
+}
+
+/// Writes distance and ridge field, both in world units, into arrays of the volume's shape
+/// (z, y, x). Voxels far from every label stay as they are.
+///
+/// # Errors
+/// As [`extract`].
 pub fn ridge_field(
-    _volume: &Volume,
-    _options: &Options,
-    _observer: &mut dyn Observer,
-    _distance: ArrayViewMut3<f32>,
-    _ridge: ArrayViewMut3<f32>,
+    volume: &Volume,
+    options: &Options,
+    observer: &mut dyn Observer,
+    mut distance: ArrayViewMut3<f32>,
+    mut ridge: ArrayViewMut3<f32>,
 ) -> Result<()> {
-    Ok(())
+    let mut execution = Execution::new(options.threads, observer)?;
+    let unit = volume.grid.unit() as f32;
+    for_each_batch(volume, options, &mut execution, 1.0, |batch, field, _| {
+        for (brick, place) in batch.places() {
+            for (entry, [x, y, z]) in bricks::voxels(brick, place, volume.grid.dimensions) {
+                // Margins of neighbouring parts overlap: the stronger field wins.
+                let (d, r) = (&mut distance[[z, y, x]], &mut ridge[[z, y, x]]);
+                *d = d.max(field.distance[entry] * unit);
+                *r = r.max(field.ridge[entry] * unit);
+            }
+        }
+        Ok(())
+    })
 }
 
 /// The mid-polylines of every slice.
-pub fn mid_polylines(_volume: &Volume, _options: &Options, _observer: &mut dyn Observer) -> Result<Polylines> {
-    Ok(Polylines::default())
+///
+/// # Errors
+/// As [`extract`].
+pub fn mid_polylines(
+    volume: &Volume,
+    options: &Options,
+    observer: &mut dyn Observer,
+) -> Result<Polylines> {
+    let mut execution = Execution::new(options.threads, observer)?;
+    trace_polylines(volume, options, &mut execution, 1.0)
 }
 
 /// Joins the polylines of neighbouring slices to a mesh.
-pub fn zip_polylines(_polylines: &Polylines, _options: &Options, _observer: &mut dyn Observer) -> Result<Mesh> {
-    Ok(Mesh::default())
+///
+/// # Errors
+/// Where the lines do not lie in parallel slices, memory is refused, or the observer cancels.
+pub fn zip_polylines(
+    polylines: &Polylines,
+    options: &Options,
+    observer: &mut dyn Observer,
+) -> Result<Mesh> {
+    polylines.check()?;
+    let mut execution = Execution::new(options.threads, observer)?;
+    zip(polylines, &mut execution, 0.0)
 }
 
-/// The mid-surface.
-pub fn extract(volume: &Volume, options: &Options, observer: &mut dyn Observer) -> Result<Mesh> {
-    zip_polylines(&mid_polylines(volume, options, observer)?, options, observer)
+fn trace_polylines(
+    volume: &Volume,
+    options: &Options,
+    execution: &mut Execution,
+    until: f64,
+) -> Result<Polylines> {
+    let mut polylines = Polylines::default();
+    let mut disks = 0;
+    for_each_batch(volume, options, execution, until, |batch, field, execution| {
+        disks += polylines::polylines(batch, field, &volume.grid, &mut polylines, execution)?;
+        Ok(())
+    })?;
+    if disks > 0 {
+        execution.warning(&format!(
+            "{disks} regions of single slices are disks, where the membrane lies flat in the \
+             slices, as at the caps of a vesicle: the surface has a gap there"
+        ));
+    }
+    Ok(polylines)
+}
+
+fn zip(polylines: &Polylines, execution: &mut Execution, from: f64) -> Result<Mesh> {
+    execution.stage("Zipping polylines", from, from + (1.0 - from) * 0.6)?;
+    let triangles = zipper::zip(polylines, execution)?;
+    execution.stage("Making the mesh", from + (1.0 - from) * 0.6, 1.0)?;
+    let mesh = Mesh::assemble(polylines, triangles)?;
+    if mesh.triangles.is_empty() && !polylines.lines.is_empty() {
+        execution.warning(
+            "there is no surface: it takes lines in two neighbouring slices, and this input has \
+             them in single slices only",
+        );
+    }
+    execution.report(1.0)?;
+    Ok(mesh)
+}
+
+/// Voxels of the parts that are worked on at once; a larger component is a batch of its own.
+const BATCH_VOXELS: usize = 1_000_000;
+
+/// Scans the volume and hands its parts with their ridge fields to `work`, in batches of whole
+/// components.
+fn for_each_batch(
+    volume: &Volume,
+    options: &Options,
+    execution: &mut Execution,
+    until: f64,
+    mut work: impl FnMut(&Batch, &ridge::RidgeField, &mut Execution) -> Result<()>,
+) -> Result<()> {
+    execution.stage("Reading labels", 0.0, 0.15 * until)?;
+    let all_parts = read_parts(volume, options, execution)?;
+    let total: usize = all_parts.iter().map(Part::voxels).sum();
+    let h = volume.grid.work_spacing();
+    let mut done = 0;
+    for parts in batches(&all_parts) {
+        let share = |voxels: usize| until * (0.15 + 0.85 * voxels as f64 / total as f64);
+        let voxels: usize = parts.iter().map(Part::voxels).sum();
+        let (from, to) = (share(done), share(done + voxels));
+        let middle = 0.5 * (from + to);
+        execution.stage("Computing the ridge field", from, middle)?;
+        let batch = Batch::new(parts, volume.grid.dimensions)?;
+        let field = ridge::ridge_field(&batch, h, execution)?;
+        execution.stage("Tracing mid-polylines", middle, to)?;
+        work(&batch, &field, execution)?;
+        done += voxels;
+    }
+    Ok(())
+}
+
+/// Cuts the parts, which are ordered by component, into batches of whole components.
+fn batches(parts: &[Part]) -> Vec<&[Part]> {
+    let mut batches = Vec::new();
+    let (mut start, mut end, mut voxels) = (0, 0, 0);
+    for component in parts.chunk_by(|a, b| a.component == b.component) {
+        let size: usize = component.iter().map(Part::voxels).sum();
+        if voxels > 0 && voxels + size > BATCH_VOXELS {
+            batches.push(&parts[start..end]);
+            (start, voxels) = (end, 0);
+        }
+        end += component.len();
+        voxels += size;
+    }
+    if end > start {
+        batches.push(&parts[start..end]);
+    }
+    batches
+}
+
+/// The parts of the wanted labels; tells the user what is missing or left out.
+fn read_parts(volume: &Volume, options: &Options, execution: &mut Execution) -> Result<Vec<Part>> {
+    let wanted: Option<BTreeSet<i64>> = options.labels.as_ref().map(|l| l.iter().copied().collect());
+    let is_wanted = |label: i64| wanted.as_ref().is_none_or(|wanted| wanted.contains(&label));
+    let scan = runs::scan(volume, execution, is_wanted)?;
+    report_labels(wanted.as_ref(), &scan.labels, execution)?;
+    let (mut parts, specks) = parts(scan.runs, execution)?;
+    if specks > 0 {
+        execution.warning(&format!(
+            "{specks} specks of fewer than {} voxels were left out",
+            components::SPECK
+        ));
+    }
+    let volume_size = volume.grid.voxel_count()?;
+    parts.retain(|part| part.voxels() < volume_size);
+    if parts.is_empty() && !scan.labels.is_empty() && specks == 0 {
+        execution.warning(
+            "one label fills the whole volume: it has no faces, and so no mid-surface",
+        );
+    }
+    Ok(parts)
+}
+
+/// Compares the labels asked for with those that are there.
+fn report_labels(
+    wanted: Option<&BTreeSet<i64>>,
+    present: &BTreeSet<i64>,
+    execution: &mut Execution,
+) -> Result<()> {
+    if present.is_empty() {
+        execution.warning("the volume has no label: all its values are 0, so there is no surface");
+        return Ok(());
+    }
+    let Some(wanted) = wanted else {
+        return Ok(());
+    };
+    if wanted.is_empty() {
+        execution.warning("no label is chosen, so there is no surface");
+        return Ok(());
+    }
+    let list = |labels: &mut dyn Iterator<Item = &i64>| {
+        let names: Vec<String> = labels.take(20).map(i64::to_string).collect();
+        names.join(", ")
+    };
+    let absent = list(&mut wanted.difference(present));
+    if wanted.is_disjoint(present) {
+        return Err(Error::LabelsAbsent {
+            asked: absent,
+            present: list(&mut present.iter()),
+        });
+    }
+    if !absent.is_empty() {
+        execution.warning(&format!("these labels are not in the volume: {absent}"));
+    }
+    Ok(())
 }

@@ -1,13 +1,22 @@
-//! The triangle mesh.
+//! The result: a triangle mesh, and the invariants it keeps.
 
-/// A triangle mesh: a 2-manifold with boundary, consistently wound in each component.
+use crate::error::{reserved, Result};
+use crate::flips::flip_edges;
+use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
+use crate::halfedge::{Edges, NONE};
+use crate::components::DisjointSets;
+use crate::manifold::{make_manifold, Surface};
+use crate::polylines::Polylines;
+use crate::zipper::Zipped;
+
+/// A triangle mesh: a 2-manifold with boundary, consistently wound in each connected piece.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
     /// World coordinates, x, y, z.
     pub points: Vec<[f32; 3]>,
     /// Three point indices a triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Unit normal of each point.
+    /// Unit normal of each point: of its triangles' normals, weighted by their angle at the point.
     pub normals: Vec<[f32; 3]>,
     /// Distance between both faces of the label at each point, world units.
     pub thickness: Vec<f32>,
@@ -16,4 +25,221 @@ pub struct Mesh {
     /// Component of each triangle: the label's 26-connected component, from 0, ordered by label,
     /// then by size, the largest first.
     pub components: Vec<u32>,
+}
+
+/// How a mesh is not what it should be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum InvariantViolation {
+    /// The arrays do not have one entry a point or a triangle.
+    #[error("an array of the mesh has {found} entries instead of {expected}")]
+    ArrayLength {
+        /// Entries expected.
+        expected: usize,
+        /// Entries found.
+        found: usize,
+    },
+    /// A triangle names a point that is not there.
+    #[error("triangle {0} names a point that is not there")]
+    PointIndex(usize),
+    /// A coordinate or a normal is not a finite number.
+    #[error("point {0} has a coordinate, normal or thickness that is no finite number")]
+    NotFinite(usize),
+    /// A triangle without an area.
+    #[error("triangle {0} has no area")]
+    Degenerate(usize),
+    /// The same three points twice.
+    #[error("triangle {0} is there twice")]
+    Duplicate(usize),
+    /// More than two triangles at an edge.
+    #[error("points {0} and {1} share an edge with more than two triangles")]
+    NonManifoldEdge(u32, u32),
+    /// Two triangles that are wound against each other.
+    #[error("the triangles at the edge of points {0} and {1} are wound against each other")]
+    Misoriented(u32, u32),
+    /// Triangles that touch in a point only.
+    #[error("at point {0} triangles touch that share no edge there")]
+    Pinched(u32),
+    /// A point no triangle uses.
+    #[error("point {0} belongs to no triangle")]
+    Unused(usize),
+}
+
+impl Mesh {
+    /// Builds the mesh from the zipper's triangles.
+    pub(crate) fn assemble(polylines: &Polylines, zipped: Vec<Zipped>) -> Result<Self> {
+        let mut surface = Surface {
+            points: polylines.points.clone(),
+            source: (0..polylines.points.len() as u32).collect(),
+            triangles: zipped.iter().map(|z| z.0).collect(),
+        };
+        make_manifold(&mut surface);
+        flip_edges(&surface.points, &mut surface.triangles);
+        turn_outward(&surface.points, &mut surface.triangles);
+        let line_of = line_of_points(polylines);
+        let line = |t: &[u32; 3]| &polylines.lines[line_of[surface.source[t[0] as usize] as usize]];
+        let mut mesh = Self {
+            labels: surface.triangles.iter().map(|t| line(t).label).collect(),
+            components: surface.triangles.iter().map(|t| line(t).component).collect(),
+            ..Self::default()
+        };
+        let normals = normals(&surface.points, &surface.triangles);
+        let mut number = crate::error::filled(surface.points.len(), u32::MAX)?;
+        mesh.triangles = reserved(surface.triangles.len())?;
+        for triangle in &surface.triangles {
+            mesh.triangles.push(triangle.map(|p| {
+                let p = p as usize;
+                if number[p] == u32::MAX {
+                    number[p] = mesh.points.len() as u32;
+                    mesh.points.push(surface.points[p].map(|v| v as f32));
+                    mesh.normals.push(normals[p].map(|v| v as f32));
+                    mesh.thickness.push(polylines.thickness[surface.source[p] as usize]);
+                }
+                number[p]
+            }));
+        }
+        Ok(mesh)
+    }
+
+    /// Checks that the mesh is a 2-manifold with boundary, consistently wound, with nothing
+    /// duplicate, degenerate or unused.
+    pub fn check_invariants(&self) -> std::result::Result<(), InvariantViolation> {
+        self.check_arrays()?;
+        let edges = Edges::new(&self.triangles, self.points.len());
+        for (a, b, group) in edges.groups() {
+            match group {
+                [_] => {}
+                [(_, e), (_, f)] => {
+                    let [p, q] = [e, f].map(|h| crate::halfedge::ends(&self.triangles, *h));
+                    if self.sorted(*e) == self.sorted(*f) {
+                        return Err(InvariantViolation::Duplicate(*f as usize / 3));
+                    }
+                    if p == q {
+                        return Err(InvariantViolation::Misoriented(a, b));
+                    }
+                }
+                _ => return Err(InvariantViolation::NonManifoldEdge(a, b)),
+            }
+        }
+        self.check_fans(&edges.twins())
+    }
+
+    /// The points of a half-edge's triangle, ascending.
+    fn sorted(&self, half_edge: u32) -> [u32; 3] {
+        let mut triangle = self.triangles[half_edge as usize / 3];
+        triangle.sort_unstable();
+        triangle
+    }
+
+    fn check_arrays(&self) -> std::result::Result<(), InvariantViolation> {
+        let lengths = [
+            (self.points.len(), self.normals.len()),
+            (self.points.len(), self.thickness.len()),
+            (self.triangles.len(), self.labels.len()),
+            (self.triangles.len(), self.components.len()),
+        ];
+        for (expected, found) in lengths {
+            if expected != found {
+                return Err(InvariantViolation::ArrayLength { expected, found });
+            }
+        }
+        for (i, (point, normal)) in self.points.iter().zip(&self.normals).enumerate() {
+            let finite = point.iter().chain(normal).all(|v| v.is_finite());
+            if !finite || !self.thickness[i].is_finite() {
+                return Err(InvariantViolation::NotFinite(i));
+            }
+        }
+        let mut used = vec![false; self.points.len()];
+        for (i, triangle) in self.triangles.iter().enumerate() {
+            for &p in triangle {
+                *used.get_mut(p as usize).ok_or(InvariantViolation::PointIndex(i))? = true;
+            }
+            let [a, b, c] = triangle.map(|p| self.points[p as usize].map(f64::from));
+            let area = length(cross(sub(b, a), sub(c, a)));
+            let longest = length(sub(b, a)).max(length(sub(c, b))).max(length(sub(a, c)));
+            if area.is_nan() || area <= 1e-9 * longest * longest {
+                return Err(InvariantViolation::Degenerate(i));
+            }
+        }
+        used.iter().position(|u| !u).map_or(Ok(()), |i| Err(InvariantViolation::Unused(i)))
+    }
+
+    /// Every point's corners must hang together through shared edges.
+    fn check_fans(&self, twins: &[u32]) -> std::result::Result<(), InvariantViolation> {
+        let mut fans = DisjointSets::new(twins.len());
+        for e in 0..twins.len() as u32 {
+            let twin = twins[e as usize];
+            if twin != NONE {
+                fans.join(e as usize, crate::halfedge::next(twin) as usize);
+            }
+        }
+        let mut fan_of = vec![NONE; self.points.len()];
+        for corner in 0..twins.len() {
+            let p = self.triangles[corner / 3][corner % 3];
+            let fan = fans.find(corner) as u32;
+            let known = &mut fan_of[p as usize];
+            if *known == NONE {
+                *known = fan;
+            } else if *known != fan {
+                return Err(InvariantViolation::Pinched(p));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The line each point of the polylines is on.
+fn line_of_points(polylines: &Polylines) -> Vec<usize> {
+    let mut line_of = vec![0; polylines.points.len()];
+    for (i, line) in polylines.lines.iter().enumerate() {
+        line_of[line.first..line.first + line.count].fill(i);
+    }
+    line_of
+}
+
+/// Turns each connected piece as a whole so that its normals point away from its middle.
+fn turn_outward(points: &[Vec3], triangles: &mut [[u32; 3]]) {
+    let mut sets = DisjointSets::new(points.len());
+    for t in triangles.iter() {
+        sets.join(t[0] as usize, t[1] as usize);
+        sets.join(t[0] as usize, t[2] as usize);
+    }
+    let roots: Vec<usize> = triangles.iter().map(|t| sets.find(t[0] as usize)).collect();
+    let mut middle = vec![([0.0; 3], 0.0); points.len()];
+    let mut outward = vec![0.0; points.len()];
+    let normal_and_centre = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|p| points[p as usize]);
+        let centre: Vec3 = std::array::from_fn(|k| (a[k] + b[k] + c[k]) / 3.0);
+        (cross(sub(b, a), sub(c, a)), centre)
+    };
+    for (t, &root) in triangles.iter().zip(&roots) {
+        let (normal, centre) = normal_and_centre(t);
+        let area = length(normal);
+        middle[root].0 = along(middle[root].0, area, centre);
+        middle[root].1 += area;
+    }
+    for (t, &root) in triangles.iter().zip(&roots) {
+        let (normal, centre) = normal_and_centre(t);
+        let (sum, area) = middle[root];
+        outward[root] += dot(normal, sub(centre, sum.map(|v| v / area)));
+    }
+    for (t, &root) in triangles.iter_mut().zip(&roots) {
+        if outward[root] < 0.0 {
+            t.swap(1, 2);
+        }
+    }
+}
+
+/// Unit normals of the points (Thürmer and Wüthrich 1998: weighted by the angle at the point).
+fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut normals = vec![[0.0; 3]; points.len()];
+    for t in triangles {
+        let [a, b, c] = t.map(|p| points[p as usize]);
+        let normal = unit(cross(sub(b, a), sub(c, a)));
+        for (k, (p, q, r)) in [(a, b, c), (b, c, a), (c, a, b)].into_iter().enumerate() {
+            let angle = dot(unit(sub(q, p)), unit(sub(r, p))).clamp(-1.0, 1.0).acos();
+            let sum = &mut normals[t[k] as usize];
+            *sum = along(*sum, angle, normal);
+        }
+    }
+    normals.into_iter().map(unit).collect()
 }

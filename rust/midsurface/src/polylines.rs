@@ -1,6 +1,31 @@
-//! Mid-polylines.
+//! Stage 5, ridge field → mid-polylines: a line midway through the label, slice by slice.
+//!
+//! Every slice along z of every part is worked on by itself (MidSurfer, section "Mid-Polyline
+//! Extraction"), the first and the last slice too. Each connected component of the slice is traced
+//! from its peak; what no line covers, branches, is traced in turn. Where the sheet lies flat in
+//! the slices, as at the caps of a closed surface, a component is a disk without a mid-line: it is
+//! counted, and the caller says so.
 
-use crate::grid::Vec3;
+use crate::bricks::Batch;
+use crate::components::Part;
+use crate::error::Result;
+use crate::execution::Execution;
+use crate::grid::{Grid, Vec3};
+use crate::interpolation::Sampler;
+use crate::ridge::RidgeField;
+use crate::runs::Run;
+use crate::slice::{Pixel, Point, Slice, COVERED};
+use crate::thickness::thickness;
+use crate::trace::{crest, trace, Trace};
+
+/// Distance of neighbouring points on a line, in units of the finest spacing (the paper's √2).
+const SPACING: f64 = std::f64::consts::SQRT_2;
+/// A component is a disk where its line's squared length is below this share of its area.
+const DISK: f64 = 1.3;
+/// How often a region that no line covers is tried from another start.
+const ATTEMPTS: usize = 3;
+/// A region of fewer pixels is the rim of a covered one.
+const SMALLEST_REGION: usize = 4;
 
 /// Polylines in the slices of a volume, all arrays parallel.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -9,8 +34,16 @@ pub struct Polylines {
     pub points: Vec<Vec3>,
     /// Local thickness at each point, world units.
     pub thickness: Vec<f32>,
-    /// The lines.
+    /// The lines, those of a component in the order of their slices.
     pub lines: Vec<Polyline>,
+}
+
+impl Polylines {
+    /// Checks lines that come from elsewhere: indices, figures, and that the lines of each slice
+    /// lie in a plane of their own, parallel to the others'.
+    pub fn check(&self) -> Result<()> {
+        Ok(())
+    }
 }
 
 /// One line: `points[first .. first + count]`, joined in this order.
@@ -28,4 +61,225 @@ pub struct Polyline {
     pub component: u32,
     /// Index of the slice along z, in the image's extent.
     pub slice: i64,
+}
+
+/// The lines of one slice of a part, work units.
+#[derive(Default)]
+struct SliceLines {
+    lines: Vec<(Trace, Vec<f64>)>,
+    disks: usize,
+}
+
+/// Traces all slices of a batch and appends their lines. Returns the number of disks.
+pub(crate) fn polylines(
+    batch: &Batch,
+    field: &RidgeField,
+    grid: &Grid,
+    polylines: &mut Polylines,
+    execution: &mut Execution,
+) -> Result<usize> {
+    let h = grid.work_spacing();
+    let jobs: Vec<(usize, &[Run])> = batch
+        .parts
+        .iter()
+        .enumerate()
+        .flat_map(|(i, part)| part.runs.chunk_by(|a, b| a.z == b.z).map(move |runs| (i, runs)))
+        .collect();
+    let mut disks = 0;
+    let mut job = jobs.iter();
+    execution.stream(
+        &jobs,
+        |&(part, runs)| {
+            let sampler = |values| Sampler {
+                directory: &batch.directories[part],
+                field: values,
+                h,
+            };
+            let samplers = [&field.ridge, &field.fraction, &field.distance].map(|f| sampler(f));
+            trace_slice(samplers, runs)
+        },
+        |found: SliceLines| {
+            disks += found.disks;
+            if let Some(&(part, runs)) = job.next() {
+                append(polylines, found, &batch.parts[part], runs[0].z, grid);
+            }
+            Ok(())
+        },
+    )?;
+    Ok(disks)
+}
+
+/// All lines of one slice of a part.
+fn trace_slice([ridge, fraction, distance]: [Sampler; 3], runs: &[Run]) -> SliceLines {
+    let z = runs[0].z as usize;
+    let mut slice = Slice::new(ridge, fraction, z);
+    let mut found = SliceLines::default();
+    for (number, pixels) in slice.components(runs).into_iter().enumerate() {
+        let component = number as u32;
+        let mut regions = vec![(pixels, 0)];
+        let mut primary = true;
+        while let Some((pixels, attempt)) = regions.pop() {
+            let line = trace_region(&mut slice, &pixels, component, primary);
+            if line.is_none() && primary {
+                found.disks += 1;
+                break;
+            }
+            primary = false;
+            let attempt = if line.is_some() { 0 } else { attempt + 1 };
+            if let Some(line) = line {
+                let thickness = line.points.iter().map(|&p| thickness(&ridge, &distance, p, z));
+                let thickness = thickness.collect();
+                found.lines.push((line, thickness));
+            }
+            if attempt < ATTEMPTS {
+                let rest = slice.uncovered(&pixels).into_iter();
+                let rest = rest.filter(|region| region.len() >= SMALLEST_REGION);
+                regions.extend(rest.map(|region| (region, attempt)));
+            }
+        }
+    }
+    found
+}
+
+/// The line from the peak of a region, `None` where there is none worth keeping. Covers what
+/// belongs to the line, or the start of a line that is not kept.
+fn trace_region(slice: &mut Slice, pixels: &[Pixel], component: u32, primary: bool) -> Option<Trace> {
+    let unit = slice.h()[0].min(slice.h()[1]);
+    let peak = pixels
+        .iter()
+        .map(|&p| (slice.ridge.value(slice.centre(p), slice.z), p))
+        .reduce(|best, next| if next.0 > best.0 { next } else { best })?
+        .1;
+    let start = slice.centre(peak);
+    let limit = 4 * pixels.len() + 64;
+    let line = trace(slice, start, component, limit).filter(|line| {
+        let length = arc_length(line);
+        let area = pixels.len() as f64 * slice.h()[0] * slice.h()[1];
+        let least = if primary { 0.3 * unit } else { 2.0 * SPACING * unit };
+        length > least && (length * length > DISK * area || area < 12.0 * unit * unit)
+    });
+    match &line {
+        Some(line) => cover_line(slice, line, component),
+        None => {
+            slice.cover(start, 1.5 * unit, component);
+            slice.set(peak.map(|v| v as isize), COVERED);
+        }
+    }
+    line.and_then(|line| resample(slice, &line, SPACING * unit))
+}
+
+fn distance(a: Point, b: Point) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+fn arc_length(line: &Trace) -> f64 {
+    let open: f64 = line.points.windows(2).map(|w| distance(w[0], w[1])).sum();
+    match (line.closed, line.points.first(), line.points.last()) {
+        (true, Some(&first), Some(&last)) => open + distance(first, last),
+        _ => open,
+    }
+}
+
+/// Unit tangent at point i.
+fn tangent(line: &Trace, i: usize) -> Point {
+    let n = line.points.len();
+    let (before, after) = if line.closed {
+        ((i + n - 1) % n, (i + 1) % n)
+    } else {
+        (i.saturating_sub(1), (i + 1).min(n - 1))
+    };
+    let (a, b) = (line.points[before], line.points[after]);
+    let length = distance(a, b).max(1e-12);
+    [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
+}
+
+/// Covers the pixels between both faces of the label along a line. The width is measured across
+/// the line, and bounded by its neighbours', so that the line does not cover a branch.
+fn cover_line(slice: &mut Slice, line: &Trace, component: u32) {
+    const WINDOW: usize = 8;
+    let unit = slice.h()[0].min(slice.h()[1]);
+    let widths: Vec<f64> = (0..line.points.len())
+        .map(|i| half_width(slice, line.points[i], tangent(line, i), component))
+        .collect();
+    for (i, &p) in line.points.iter().enumerate() {
+        let mut near = widths[i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(widths.len())].to_vec();
+        near.sort_by(f64::total_cmp);
+        let typical = near[near.len() / 2];
+        let radius = widths[i].min(1.3 * typical) + 0.75 * unit;
+        slice.cover(p, radius, component);
+    }
+}
+
+/// Distance from a point to the farther face of the label, across the line.
+fn half_width(slice: &Slice, p: Point, tangent: Point, component: u32) -> f64 {
+    let step = 0.5 * slice.h()[0].min(slice.h()[1]);
+    let side = |sign: f64| {
+        let at = |k: usize| {
+            let t = sign * step * k as f64;
+            [p[0] - t * tangent[1], p[1] + t * tangent[0]]
+        };
+        let most = 2 * crate::distance::LARGEST as usize;
+        let steps = (1..most).find(|&k| slice.component(slice.pixel(at(k))) != Some(component));
+        step * steps.unwrap_or(most) as f64
+    };
+    side(1.0).max(side(-1.0))
+}
+
+/// Points at even distances near `spacing` along a line, put back onto the ridge. The ends of an
+/// open line stay. `None` where the line is shorter than half a segment.
+fn resample(slice: &Slice, line: &Trace, spacing: f64) -> Option<Trace> {
+    let length = arc_length(line);
+    let segments = (length / spacing).round() as usize;
+    let segments = segments.max(if line.closed { 3 } else { 1 });
+    if length < 0.3 * spacing {
+        return None;
+    }
+    let mut corners = line.points.clone();
+    if line.closed {
+        corners.push(line.points[0]);
+    }
+    let mut points = Vec::with_capacity(segments + 1);
+    let (mut corner, mut passed) = (0, 0.0);
+    for k in 0..=segments {
+        let target = length * k as f64 / segments as f64;
+        while corner + 2 < corners.len()
+            && passed + distance(corners[corner], corners[corner + 1]) < target
+        {
+            passed += distance(corners[corner], corners[corner + 1]);
+            corner += 1;
+        }
+        let (a, b) = (corners[corner], corners[corner + 1]);
+        let t = ((target - passed) / distance(a, b).max(1e-12)).clamp(0.0, 1.0);
+        let p = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
+        let end = !line.closed && (k == 0 || k == segments);
+        let along = [(b[0] - a[0]), (b[1] - a[1])];
+        let norm = along[0].hypot(along[1]).max(1e-12);
+        points.push(if end { p } else { crest(slice, p, [along[0] / norm, along[1] / norm]) });
+    }
+    if line.closed {
+        points.pop();
+    }
+    Some(Trace {
+        points,
+        closed: line.closed,
+    })
+}
+
+/// Moves a slice's lines into world coordinates and appends them.
+fn append(polylines: &mut Polylines, found: SliceLines, part: &Part, z: u32, grid: &Grid) {
+    let h = grid.work_spacing();
+    for (line, thickness) in found.lines {
+        polylines.lines.push(Polyline {
+            first: polylines.points.len(),
+            count: line.points.len(),
+            closed: line.closed,
+            label: part.label,
+            component: part.component,
+            slice: grid.extent_start[2] + i64::from(z),
+        });
+        let world = |p: &Point| grid.world([p[0] / h[0], p[1] / h[1], f64::from(z)]);
+        polylines.points.extend(line.points.iter().map(world));
+        let scaled = thickness.iter().map(|t| (t * grid.unit()) as f32);
+        polylines.thickness.extend(scaled);
+    }
 }

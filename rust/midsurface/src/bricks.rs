@@ -1,0 +1,202 @@
+//! Sparse storage: bricks of 8³ voxels, where a part's voxels are and a margin around them.
+//!
+//! Bricks lie on the volume's own grid, brick b covers voxels 8b .. 8b + 7 along each axis, so that
+//! a piece of a volume has the bricks of the whole. Within a brick x runs fastest, then y, z:
+//! ```text
+//! entry = brick · 512 + (z mod 8) · 64 + (y mod 8) · 8 + (x mod 8)
+//! ```
+//! Each part has bricks of its own; where two parts are close, both have a brick at the same place.
+
+use crate::components::Part;
+use crate::error::{filled, reserved, Result};
+
+/// Voxels along a brick's edge.
+pub(crate) const EDGE: usize = 8;
+/// Voxels in one slice of a brick.
+pub(crate) const LAYER: usize = EDGE * EDGE;
+/// Voxels in a brick.
+pub(crate) const BRICK: usize = EDGE * LAYER;
+/// Voxels around a part for which fields are kept: what interpolation near a face reaches.
+pub(crate) const MARGIN: usize = 3;
+
+const ABSENT: u32 = u32::MAX;
+
+/// The bricks of one part: a dense directory over the part's bounding box.
+#[derive(Debug, Clone)]
+pub(crate) struct Directory {
+    /// Number of voxels of the volume along x, y, z.
+    pub dimensions: [usize; 3],
+    /// First brick of the bounding box along x, y, z.
+    low: [usize; 3],
+    /// Bricks in the bounding box along x, y, z.
+    extent: [usize; 3],
+    /// Index of each brick among all bricks of the batch.
+    index: Vec<u32>,
+    /// Places of the present bricks, ordered by z, y, x.
+    pub places: Vec<[usize; 3]>,
+    /// Index of the first brick.
+    pub first: usize,
+}
+
+impl Directory {
+    /// The bricks that `part` and its margin touch; the first one gets index `first`.
+    pub fn new(part: &Part, dimensions: [usize; 3], first: usize) -> Result<Self> {
+        let reach = |run: &crate::runs::Run| -> [(usize, usize); 3] {
+            [
+                (run.start as usize, run.end as usize - 1),
+                (run.y as usize, run.y as usize),
+                (run.z as usize, run.z as usize),
+            ]
+        };
+        let bricks = |axis: usize, (from, to): (usize, usize)| {
+            let last = (to + MARGIN).min(dimensions[axis] - 1);
+            (from.saturating_sub(MARGIN) / EDGE, last / EDGE)
+        };
+        let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
+        for run in &part.runs {
+            let reach = reach(run);
+            for axis in 0..3 {
+                let (from, to) = bricks(axis, reach[axis]);
+                low[axis] = low[axis].min(from);
+                high[axis] = high[axis].max(to);
+            }
+        }
+        let extent: [usize; 3] = std::array::from_fn(|a| high[a] + 1 - low[a]);
+        let mut directory = Self {
+            dimensions,
+            low,
+            extent,
+            index: filled(extent.iter().product(), ABSENT)?,
+            places: Vec::new(),
+            first,
+        };
+        for run in &part.runs {
+            let [x, y, z] = reach(run);
+            let (x, y, z) = (bricks(0, x), bricks(1, y), bricks(2, z));
+            for bz in z.0..=z.1 {
+                for by in y.0..=y.1 {
+                    let row = directory.cell([x.0, by, bz]);
+                    directory.index[row..=row + x.1 - x.0].fill(0);
+                }
+            }
+        }
+        directory.number_bricks()?;
+        Ok(directory)
+    }
+
+    fn number_bricks(&mut self) -> Result<()> {
+        let present = self.index.iter().filter(|&&i| i != ABSENT).count();
+        self.places = reserved(present)?;
+        for (cell, index) in self.index.iter_mut().enumerate() {
+            if *index != ABSENT {
+                *index = (self.first + self.places.len()) as u32;
+                let [nx, ny, _] = self.extent;
+                let at = [cell % nx, cell / nx % ny, cell / nx / ny];
+                self.places.push(std::array::from_fn(|a| at[a] + self.low[a]));
+            }
+        }
+        Ok(())
+    }
+
+    /// Position in `index` of a brick within the bounding box.
+    fn cell(&self, brick: [usize; 3]) -> usize {
+        let [x, y, z]: [usize; 3] = std::array::from_fn(|a| brick[a] - self.low[a]);
+        (z * self.extent[1] + y) * self.extent[0] + x
+    }
+
+    /// Index of the brick at a place, `None` where the part has none.
+    pub fn brick(&self, place: [usize; 3]) -> Option<usize> {
+        let inside = (0..3)
+            .all(|a| place[a] >= self.low[a] && place[a] - self.low[a] < self.extent[a]);
+        if !inside {
+            return None;
+        }
+        let index = self.index[self.cell(place)];
+        (index != ABSENT).then_some(index as usize)
+    }
+
+    /// Entry of a voxel in the batch's arrays, `None` where the part has no brick.
+    pub fn entry(&self, voxel: [usize; 3]) -> Option<usize> {
+        let brick = self.brick(voxel.map(|v| v / EDGE))?;
+        let [x, y, z] = voxel.map(|v| v % EDGE);
+        Some(brick * BRICK + z * LAYER + y * EDGE + x)
+    }
+
+    /// Like [`Self::entry`], for a voxel that may lie outside the volume.
+    pub fn entry_at(&self, voxel: [isize; 3]) -> Option<usize> {
+        if voxel.iter().any(|&v| v < 0) {
+            return None;
+        }
+        self.entry(voxel.map(|v| v as usize))
+    }
+
+    /// The bricks (as indices) of brick layer `bz`, which follow each other.
+    pub fn layer(&self, bz: usize) -> std::ops::Range<usize> {
+        let start = self.places.partition_point(|place| place[2] < bz);
+        let end = self.places.partition_point(|place| place[2] <= bz);
+        self.first + start..self.first + end
+    }
+}
+
+/// The parts that are worked on at once, with their bricks numbered through.
+pub(crate) struct Batch<'a> {
+    pub parts: &'a [Part],
+    pub directories: Vec<Directory>,
+    /// Part of each brick, as an index into `parts`.
+    pub part_of_brick: Vec<u32>,
+}
+
+impl<'a> Batch<'a> {
+    pub fn new(parts: &'a [Part], dimensions: [usize; 3]) -> Result<Self> {
+        let mut directories = reserved(parts.len())?;
+        let mut first = 0;
+        for part in parts {
+            let directory = Directory::new(part, dimensions, first)?;
+            first += directory.places.len();
+            directories.push(directory);
+        }
+        let mut part_of_brick = reserved(first)?;
+        for (part, directory) in directories.iter().enumerate() {
+            part_of_brick.resize(directory.first + directory.places.len(), part as u32);
+        }
+        Ok(Self {
+            parts,
+            directories,
+            part_of_brick,
+        })
+    }
+
+    /// A field over all bricks, filled with zero.
+    pub fn field(&self) -> Result<Vec<f32>> {
+        filled(self.part_of_brick.len() * BRICK, 0.0)
+    }
+
+    /// The directory that brick `index` belongs to, and the brick's place.
+    pub fn brick(&self, index: usize) -> (&Directory, [usize; 3]) {
+        let directory = &self.directories[self.part_of_brick[index] as usize];
+        (directory, directory.places[index - directory.first])
+    }
+}
+
+impl Batch<'_> {
+    /// All bricks as index and place.
+    pub fn places(&self) -> impl Iterator<Item = (usize, [usize; 3])> + '_ {
+        self.directories
+            .iter()
+            .flat_map(|d| d.places.iter().enumerate().map(|(i, &place)| (d.first + i, place)))
+    }
+}
+
+/// Entry and coordinates of the voxels of a brick that lie in the volume.
+pub(crate) fn voxels(
+    brick: usize,
+    place: [usize; 3],
+    dimensions: [usize; 3],
+) -> impl Iterator<Item = (usize, [usize; 3])> {
+    (0..BRICK)
+        .map(move |i| {
+            let within = [i % EDGE, i / EDGE % EDGE, i / LAYER];
+            (brick * BRICK + i, std::array::from_fn(|a| place[a] * EDGE + within[a]))
+        })
+        .filter(move |(_, voxel): &(usize, [usize; 3])| (0..3).all(|a| voxel[a] < dimensions[a]))
+}

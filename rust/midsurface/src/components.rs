@@ -1,0 +1,242 @@
+//! Stage 2, runs → parts: which voxels belong together.
+//!
+//! A *component* is what a user sees as one object: voxels of one label connected through faces,
+//! edges or corners (26 neighbours). A *part* is what one blur may see: voxels connected through
+//! faces (6 neighbours), since two sheets one voxel apart touch at corners. Sheets of a single
+//! voxel are held together by corners only, so thin parts that touch are one part.
+
+use crate::execution::Execution;
+use crate::error::Result;
+use crate::runs::Run;
+
+/// Components of fewer voxels are specks of noise, not membranes.
+pub(crate) const SPECK: usize = 30;
+
+/// A set of runs of one label that one blur may see, ordered by z, y, x.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Part {
+    pub label: i64,
+    /// Number of the component, as in [`crate::Mesh::components`].
+    pub component: u32,
+    pub runs: Vec<Run>,
+}
+
+impl Part {
+    /// Number of labelled voxels.
+    pub fn voxels(&self) -> usize {
+        self.runs.iter().map(Run::length).sum()
+    }
+}
+
+/// Disjoint sets of indices; the smallest index of a set stands for it.
+pub(crate) struct DisjointSets(Vec<u32>);
+
+impl DisjointSets {
+    pub fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    pub fn find(&mut self, mut i: usize) -> usize {
+        while self.0[i] as usize != i {
+            self.0[i] = self.0[self.0[i] as usize];
+            i = self.0[i] as usize;
+        }
+        i
+    }
+
+    pub fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a), self.find(b));
+        self.0[a.max(b)] = a.min(b) as u32;
+    }
+}
+
+/// The parts of all labels, ordered by component, and the number of specks left out.
+pub(crate) fn parts(mut runs: Vec<Run>, execution: &mut Execution) -> Result<(Vec<Part>, usize)> {
+    // A stable sort: within a label the order z, y, x stays.
+    runs.sort_by_key(|run| run.label);
+    let mut parts = Vec::new();
+    let (mut specks, mut components) = (0, 0);
+    let total = runs.len();
+    let mut done = 0;
+    for runs in runs.chunk_by(|a, b| a.label == b.label) {
+        specks += parts_of_label(runs, &mut components, &mut parts);
+        done += runs.len();
+        execution.report(done as f64 / total as f64)?;
+    }
+    Ok((parts, specks))
+}
+
+/// Appends one label's parts and returns its number of specks.
+fn parts_of_label(runs: &[Run], components: &mut u32, parts: &mut Vec<Part>) -> usize {
+    let mut whole = DisjointSets::new(runs.len());
+    let mut faces = DisjointSets::new(runs.len());
+    for_each_touch(runs, |a, b, share_a_face| {
+        whole.join(a, b);
+        if share_a_face {
+            faces.join(a, b);
+        }
+    });
+    join_thin(runs, &mut faces);
+
+    let (order, specks) = components_by_size(runs, &mut whole);
+    let mut number = vec![u32::MAX; runs.len()];
+    for (i, &root) in order.iter().enumerate() {
+        number[root] = *components + i as u32;
+    }
+    *components += order.len() as u32;
+
+    let first = parts.len();
+    let mut part_of_root = vec![u32::MAX; runs.len()];
+    for (i, run) in runs.iter().enumerate() {
+        let component = number[whole.find(i)];
+        if component == u32::MAX {
+            continue;
+        }
+        let part = &mut part_of_root[faces.find(i)];
+        if *part == u32::MAX {
+            *part = parts.len() as u32;
+            parts.push(Part {
+                label: run.label,
+                component,
+                runs: Vec::new(),
+            });
+        }
+        parts[*part as usize].runs.push(*run);
+    }
+    parts[first..].sort_by_key(|part| part.component);
+    specks
+}
+
+/// Roots of the components that are not specks, the largest first, and the number of specks.
+fn components_by_size(runs: &[Run], sets: &mut DisjointSets) -> (Vec<usize>, usize) {
+    let mut sizes = vec![0usize; runs.len()];
+    for (i, run) in runs.iter().enumerate() {
+        sizes[sets.find(i)] += run.length();
+    }
+    let mut roots: Vec<usize> = (0..runs.len()).filter(|&i| sizes[i] > 0).collect();
+    let all = roots.len();
+    roots.retain(|&i| sizes[i] >= SPECK);
+    // Equal sizes: the one met first in the volume comes first.
+    roots.sort_by_key(|&i| (std::cmp::Reverse(sizes[i]), i));
+    let specks = all - roots.len();
+    (roots, specks)
+}
+
+/// Joins parts that touch at edges or corners where both are a single voxel thick.
+fn join_thin(runs: &[Run], faces: &mut DisjointSets) {
+    let mut thin = vec![0usize; runs.len()];
+    let mut size = vec![0usize; runs.len()];
+    let row_of = RowIndex::new(runs);
+    for (i, run) in runs.iter().enumerate() {
+        let root = faces.find(i);
+        size[root] += run.length();
+        thin[root] += (run.start..run.end)
+            .filter(|&x| run.length() == 1 || row_of.alone(runs, run, x))
+            .count();
+    }
+    let is_thin: Vec<bool> = (0..runs.len())
+        .map(|i| {
+            let root = faces.find(i);
+            2 * thin[root] >= size[root]
+        })
+        .collect();
+    for_each_touch(runs, |a, b, _| {
+        if is_thin[a] && is_thin[b] {
+            faces.join(a, b);
+        }
+    });
+}
+
+/// Finds the runs of a row.
+struct RowIndex {
+    /// First run of each row (z, y) that has one, with a sentinel at the end.
+    starts: Vec<usize>,
+    rows: Vec<(u32, u32)>,
+}
+
+impl RowIndex {
+    fn new(runs: &[Run]) -> Self {
+        let mut starts = Vec::new();
+        let mut rows: Vec<(u32, u32)> = Vec::new();
+        for (i, run) in runs.iter().enumerate() {
+            if rows.last() != Some(&(run.z, run.y)) {
+                rows.push((run.z, run.y));
+                starts.push(i);
+            }
+        }
+        starts.push(runs.len());
+        Self { starts, rows }
+    }
+
+    /// The range of runs in row (z, y).
+    fn row(&self, z: u32, y: u32) -> std::ops::Range<usize> {
+        match self.rows.binary_search(&(z, y)) {
+            Ok(i) => self.starts[i]..self.starts[i + 1],
+            Err(_) => 0..0,
+        }
+    }
+
+    fn labelled(&self, runs: &[Run], x: u32, y: Option<u32>, z: Option<u32>) -> bool {
+        let (Some(y), Some(z)) = (y, z) else {
+            return false;
+        };
+        let row = &runs[self.row(z, y)];
+        let after = row.partition_point(|run| run.start <= x);
+        after > 0 && x < row[after - 1].end
+    }
+
+    /// Whether voxel x of `run` has background on both sides along y or along z.
+    fn alone(&self, runs: &[Run], run: &Run, x: u32) -> bool {
+        let (y, z) = (run.y, run.z);
+        let along_y = || {
+            self.labelled(runs, x, y.checked_sub(1), Some(z))
+                || self.labelled(runs, x, y.checked_add(1), Some(z))
+        };
+        let along_z = || {
+            self.labelled(runs, x, Some(y), z.checked_sub(1))
+                || self.labelled(runs, x, Some(y), z.checked_add(1))
+        };
+        !along_y() || !along_z()
+    }
+}
+
+/// Calls `touch(a, b, share_a_face)` for all pairs of runs that are 26-neighbours.
+fn for_each_touch(runs: &[Run], mut touch: impl FnMut(usize, usize, bool)) {
+    let index = RowIndex::new(runs);
+    for (i, &(z, y)) in index.rows.iter().enumerate() {
+        let row = index.starts[i]..index.starts[i + 1];
+        let before = [
+            (y.checked_sub(1), Some(z), true),
+            (y.checked_sub(1), z.checked_sub(1), false),
+            (Some(y), z.checked_sub(1), true),
+            (Some(y + 1), z.checked_sub(1), false),
+        ];
+        for (y, z, shares_face) in before {
+            if let (Some(y), Some(z)) = (y, z) {
+                touching(runs, row.clone(), index.row(z, y), shares_face, &mut touch);
+            }
+        }
+    }
+}
+
+/// Walks two rows side by side.
+fn touching(
+    runs: &[Run],
+    mut a: std::ops::Range<usize>,
+    mut b: std::ops::Range<usize>,
+    shares_face: bool,
+    touch: &mut impl FnMut(usize, usize, bool),
+) {
+    while !a.is_empty() && !b.is_empty() {
+        let (p, q) = (&runs[a.start], &runs[b.start]);
+        if p.start <= q.end && q.start <= p.end {
+            let overlap = p.start < q.end && q.start < p.end;
+            touch(a.start, b.start, shares_face && overlap);
+        }
+        if p.end < q.end {
+            a.start += 1;
+        } else {
+            b.start += 1;
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! One slice of one part: its pixels, what is already covered by lines, and the fields in it.
+
+use crate::bricks::{Directory, EDGE, LAYER};
+use crate::components::DisjointSets;
+use crate::grid::Vec3;
+use crate::interpolation::Sampler;
+use crate::runs::Run;
+
+/// A pixel as column and row.
+pub(crate) type Pixel = [usize; 2];
+/// A point in a slice, work units.
+pub(crate) type Point = [f64; 2];
+
+/// A line runs through the pixel.
+pub(crate) const LINE: u8 = 1;
+/// The pixel belongs to a line, or no line was found for it.
+pub(crate) const COVERED: u8 = 2;
+/// Met while regions are collected.
+const QUEUED: u8 = 4;
+
+/// No component of the slice.
+const NOWHERE: u32 = u32::MAX;
+
+/// One slice of a part.
+pub(crate) struct Slice<'a> {
+    pub z: usize,
+    pub ridge: Sampler<'a>,
+    pub fraction: Sampler<'a>,
+    /// First brick of the slice's brick layer.
+    first_brick: usize,
+    component: Vec<u32>,
+    flags: Vec<u8>,
+}
+
+impl<'a> Slice<'a> {
+    /// An empty slice over the bricks of the part at height `z`.
+    pub fn new(ridge: Sampler<'a>, fraction: Sampler<'a>, z: usize) -> Self {
+        let layer = ridge.directory.layer(z / EDGE);
+        Self {
+            z,
+            ridge,
+            fraction,
+            first_brick: layer.start,
+            component: vec![NOWHERE; layer.len() * LAYER],
+            flags: vec![0; layer.len() * LAYER],
+        }
+    }
+
+    /// Work spacing.
+    pub fn h(&self) -> Vec3 {
+        self.ridge.h
+    }
+
+    fn directory(&self) -> &Directory {
+        self.ridge.directory
+    }
+
+    fn entry(&self, x: isize, y: isize) -> Option<usize> {
+        if x < 0 || y < 0 {
+            return None;
+        }
+        let (x, y) = (x as usize, y as usize);
+        let brick = self.directory().brick([x / EDGE, y / EDGE, self.z / EDGE])?;
+        Some((brick - self.first_brick) * LAYER + y % EDGE * EDGE + x % EDGE)
+    }
+
+    /// The pixel a point lies in.
+    pub fn pixel(&self, p: Point) -> [isize; 2] {
+        let h = self.h();
+        [(p[0] / h[0]).round() as isize, (p[1] / h[1]).round() as isize]
+    }
+
+    /// The middle of a pixel.
+    pub fn centre(&self, pixel: Pixel) -> Point {
+        let h = self.h();
+        [pixel[0] as f64 * h[0], pixel[1] as f64 * h[1]]
+    }
+
+    /// Finds the slice's components (8 neighbours) and marks their pixels with their numbers.
+    pub fn components(&mut self, runs: &[Run]) -> Vec<Vec<Pixel>> {
+        let mut sets = DisjointSets::new(runs.len());
+        let mut above = 0;
+        for i in 0..runs.len() {
+            while above < i && runs[above].y + 1 < runs[i].y {
+                above += 1;
+            }
+            for j in above..i {
+                let touch = runs[j].y + 1 == runs[i].y
+                    && runs[j].start <= runs[i].end
+                    && runs[i].start <= runs[j].end;
+                if touch {
+                    sets.join(i, j);
+                }
+            }
+        }
+        let mut number = vec![NOWHERE; runs.len()];
+        let mut components: Vec<Vec<Pixel>> = Vec::new();
+        for (i, run) in runs.iter().enumerate() {
+            let root = sets.find(i);
+            if number[root] == NOWHERE {
+                number[root] = components.len() as u32;
+                components.push(Vec::new());
+            }
+            let component = number[root];
+            for x in run.start as usize..run.end as usize {
+                let y = run.y as usize;
+                components[component as usize].push([x, y]);
+                if let Some(entry) = self.entry(x as isize, y as isize) {
+                    self.component[entry] = component;
+                }
+            }
+        }
+        components
+    }
+
+    /// The component of a pixel.
+    pub fn component(&self, [x, y]: [isize; 2]) -> Option<u32> {
+        let component = self.component[self.entry(x, y)?];
+        (component != NOWHERE).then_some(component)
+    }
+
+    /// Whether a pixel or one of its eight neighbours is of `component`.
+    pub fn near(&self, [x, y]: [isize; 2], component: u32) -> bool {
+        (-1..=1).any(|dy| (-1..=1).any(|dx| self.component([x + dx, y + dy]) == Some(component)))
+    }
+
+    /// Whether a point lies within the volume.
+    pub fn inside(&self, p: Point) -> bool {
+        let (h, n) = (self.h(), self.directory().dimensions);
+        (0..2).all(|a| p[a] >= 0.0 && p[a] <= (n[a] - 1) as f64 * h[a])
+    }
+
+    /// Whether `flag` is set on a pixel.
+    pub fn has(&self, [x, y]: [isize; 2], flag: u8) -> bool {
+        self.entry(x, y).is_some_and(|entry| self.flags[entry] & flag != 0)
+    }
+
+    /// Sets `flag` on a pixel.
+    pub fn set(&mut self, [x, y]: [isize; 2], flag: u8) {
+        if let Some(entry) = self.entry(x, y) {
+            self.flags[entry] |= flag;
+        }
+    }
+
+    fn clear(&mut self, [x, y]: Pixel, flag: u8) {
+        if let Some(entry) = self.entry(x as isize, y as isize) {
+            self.flags[entry] &= !flag;
+        }
+    }
+
+    /// Covers the pixels of `component` within `radius` of a point.
+    pub fn cover(&mut self, p: Point, radius: f64, component: u32) {
+        let h = self.h();
+        let range = |a: usize| {
+            let from = ((p[a] - radius) / h[a]).ceil() as isize;
+            let to = ((p[a] + radius) / h[a]).floor() as isize;
+            from..=to
+        };
+        for y in range(1) {
+            for x in range(0) {
+                let (dx, dy) = (x as f64 * h[0] - p[0], y as f64 * h[1] - p[1]);
+                let near = dx * dx + dy * dy <= radius * radius;
+                if near && self.component([x, y]) == Some(component) {
+                    self.set([x, y], COVERED);
+                }
+            }
+        }
+    }
+
+    /// The connected regions (8 neighbours) of the pixels that are not covered.
+    pub fn uncovered(&mut self, pixels: &[Pixel]) -> Vec<Vec<Pixel>> {
+        let mut regions = Vec::new();
+        let open = |slice: &Self, p: [isize; 2], component| {
+            slice.component(p) == Some(component) && !slice.has(p, COVERED | QUEUED)
+        };
+        for &seed in pixels {
+            let at = seed.map(|v| v as isize);
+            let Some(component) = self.component(at).filter(|&c| open(self, at, c)) else {
+                continue;
+            };
+            self.set(at, QUEUED);
+            let mut region = vec![seed];
+            let mut next = 0;
+            while next < region.len() {
+                let [x, y] = region[next].map(|v| v as isize);
+                next += 1;
+                for (dx, dy) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))) {
+                    let p = [x + dx, y + dy];
+                    if open(self, p, component) {
+                        self.set(p, QUEUED);
+                        region.push(p.map(|v| v as usize));
+                    }
+                }
+            }
+            regions.push(region);
+        }
+        for &pixel in regions.iter().flatten() {
+            self.clear(pixel, QUEUED);
+        }
+        regions
+    }
+}
