@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Installs, builds and runs every test. Fails at the first step that does not pass.
+set -euo pipefail
+cd "$(dirname "$0")"
+. scripts/build.sh
+
+install_packages "${build_packages[@]}" "${display_packages[@]}" clang-format
+install_rust
+# Where Rust came from Debian, its formatter does too; Debian has no clippy for it.
+is_installed rustc-web && ! cargo fmt --version >/dev/null 2>&1 && install_packages rustfmt-web
+
+say "Formatting"
+cargo fmt --all --check
+git ls-files '*.h' '*.hpp' '*.cxx' '*.c' | grep -v '/midsurface\.h$' |
+  xargs --no-run-if-empty clang-format --dry-run --Werror
+
+build_all
+
+say "Rust: lints and documentation"
+if cargo clippy --version >/dev/null 2>&1; then
+  cargo clippy --locked --workspace --all-targets --release -- -D warnings
+else
+  echo "clippy is not installed: its lints are skipped"
+fi
+RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --release
+
+say "Rust: tests"
+cargo test --locked --workspace --release
+
+say "C, C++ and pvpython: tests"
+with_display ctest --test-dir build --output-on-failure
+
+say "Both commands from outside"
+tests/demo/run.sh
