@@ -1,0 +1,35 @@
+# Builds the Rust core behind its C interface and offers it as the target `midsurface_capi`.
+#
+# cargo decides what is out of date, so it runs in every build (a fraction of a second where nothing
+# changed). Its target folder lies in the build tree, unless CARGO_TARGET_DIR is set in the
+# environment when CMake configures.
+find_program(CARGO_EXECUTABLE cargo REQUIRED HINTS "$ENV{CARGO_HOME}/bin" "$ENV{HOME}/.cargo/bin")
+find_package(Threads REQUIRED)
+
+if (DEFINED ENV{CARGO_TARGET_DIR})
+  get_filename_component(cargo_target_folder "$ENV{CARGO_TARGET_DIR}" ABSOLUTE
+    BASE_DIR "${PROJECT_SOURCE_DIR}")
+else ()
+  set(cargo_target_folder "${PROJECT_BINARY_DIR}/cargo")
+endif ()
+set(capi_folder "${PROJECT_SOURCE_DIR}/rust/midsurface-capi")
+set(capi_library "${cargo_target_folder}/release/libmidsurface_capi.a")
+
+add_custom_target(midsurface_cargo
+  COMMAND "${CARGO_EXECUTABLE}" build --locked --release --package midsurface-capi
+    --manifest-path "${PROJECT_SOURCE_DIR}/Cargo.toml" --target-dir "${cargo_target_folder}"
+  BYPRODUCTS "${capi_library}"
+  COMMENT "Building the Rust core"
+  USES_TERMINAL
+  VERBATIM)
+
+add_library(midsurface_capi STATIC IMPORTED GLOBAL)
+add_dependencies(midsurface_capi midsurface_cargo)
+set_target_properties(midsurface_capi PROPERTIES
+  IMPORTED_LOCATION "${capi_library}"
+  INTERFACE_INCLUDE_DIRECTORIES "${capi_folder}/include")
+# What `rustc --print native-static-libs` asks for.
+target_link_libraries(midsurface_capi INTERFACE
+  gcc_s util rt Threads::Threads m ${CMAKE_DL_LIBS})
+# Rust's own symbols stay inside the library that links the core: two copies in one process clash.
+target_link_options(midsurface_capi INTERFACE "LINKER:--exclude-libs,libmidsurface_capi.a")

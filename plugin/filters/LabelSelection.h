@@ -1,0 +1,73 @@
+#ifndef LabelSelection_h
+#define LabelSelection_h
+
+#include "SegmentationVolume.h"
+
+#include "vtkDataArraySelection.h"
+#include "vtkNew.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+class FilterRun;
+class vtkDataObject;
+
+/**
+ * Which labels there are, and which of them are wanted.
+ *
+ * `Requested` is what the user ticked and unticked, by name; `Found` is the list of what the input
+ * holds, each with its tick as the request leaves it. The rules:
+ * - No request, or all that was found ticked: all labels, new ones too when the input changes.
+ * - All that was found unticked: none, whatever the input becomes.
+ * - Else the ticked ones; where the request only unticks, all but those.
+ */
+class LabelSelection
+{
+public:
+  vtkNew<vtkDataArraySelection> Requested;
+  vtkNew<vtkDataArraySelection> Found;
+
+  /**
+   * Brings `Found` up to date with the arrays of `input`, which may be null, empty or a composite.
+   * Arrays that did not change are not read again. An array that holds no labels adds none: the
+   * run that follows has to say so.
+   * @param choiceTime when the array was chosen that `find` looks up.
+   */
+  void Update(const ArrayFinder& find, vtkMTimeType choiceTime, vtkDataObject* input, int threads);
+
+  /** To be called after every change of `Requested`; `choiceTime` as for Update. */
+  void RequestChanged(vtkMTimeType choiceTime);
+
+  /**
+   * Tells `run` which labels of `volume` to extract.
+   * @throws std::runtime_error where a label is asked for that the input does not hold.
+   */
+  void Apply(FilterRun& run, const SegmentationVolume& volume) const;
+
+private:
+  enum class Meaning
+  {
+    All,
+    None,
+    Listed
+  };
+  struct ScannedArray
+  {
+    const vtkDataArray* Array;
+    vtkMTimeType MTime;
+    bool Readable;
+    std::vector<int64_t> Labels;
+  };
+
+  void RefreshFound();
+  bool IsTicked(const std::string& label) const;
+  void CheckPresence(const std::string& arrayName) const;
+
+  Meaning Request = Meaning::All;
+  std::vector<ScannedArray> Scanned;
+  /** When the array was chosen that `Found` belongs to. */
+  vtkMTimeType FoundChoiceTime = 0;
+};
+
+#endif

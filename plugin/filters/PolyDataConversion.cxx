@@ -1,0 +1,163 @@
+#include "PolyDataConversion.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkLongLongArray.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTypeInt64Array.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+static_assert(sizeof(long long) == sizeof(int64_t), "labels are 64-bit integers");
+
+namespace
+{
+/** A new array of `tuples` with `components` each, filled from `values`, which may be null for 0.
+ */
+template <typename ArrayType, typename ValueType>
+vtkSmartPointer<ArrayType> CopyArray(
+  const char* name, const ValueType* values, size_t tuples, int components = 1)
+{
+  auto array = vtkSmartPointer<ArrayType>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
+  if (tuples > 0)
+  {
+    std::copy_n(values, tuples * static_cast<size_t>(components), array->GetPointer(0));
+  }
+  return array;
+}
+
+template <typename ArrayType, typename ValueType>
+void CopyPoints(const ValueType* values, size_t count, vtkPolyData* output)
+{
+  vtkNew<vtkPoints> points;
+  points->SetData(CopyArray<ArrayType>("Points", values, count, 3));
+  output->SetPoints(points);
+}
+} // namespace
+
+//------------------------------------------------------------------------------
+void CopyMesh(const midsurface_mesh_arrays& mesh, vtkPolyData* output)
+{
+  CopyPoints<vtkFloatArray>(mesh.points, mesh.point_count, output);
+  output->GetPointData()->SetNormals(
+    CopyArray<vtkFloatArray>("Normals", mesh.normals, mesh.point_count, 3));
+  output->GetPointData()->AddArray(
+    CopyArray<vtkFloatArray>("Thickness", mesh.thickness, mesh.point_count));
+
+  vtkNew<vtkCellArray> triangles;
+  triangles->SetData(
+    3, CopyArray<vtkTypeInt64Array>("Connectivity", mesh.triangles, 3 * mesh.triangle_count));
+  output->SetPolys(triangles);
+  output->GetCellData()->AddArray(
+    CopyArray<vtkLongLongArray>("Label", mesh.labels, mesh.triangle_count));
+  output->GetCellData()->AddArray(
+    CopyArray<vtkLongLongArray>("Component", mesh.components, mesh.triangle_count));
+}
+
+//------------------------------------------------------------------------------
+void CopyPolylines(const midsurface_polyline_arrays& polylines, vtkPolyData* output)
+{
+  CopyPoints<vtkDoubleArray>(polylines.points, polylines.point_count, output);
+  output->GetPointData()->AddArray(
+    CopyArray<vtkFloatArray>("Thickness", polylines.thickness, polylines.point_count));
+
+  if (polylines.line_count > 0)
+  {
+    vtkNew<vtkCellArray> lines;
+    lines->SetData(
+      CopyArray<vtkTypeInt64Array>("Offsets", polylines.offsets, polylines.line_count + 1),
+      CopyArray<vtkTypeInt64Array>(
+        "Connectivity", polylines.connectivity, polylines.connectivity_length));
+    output->SetLines(lines);
+  }
+  const size_t count = polylines.line_count;
+  vtkCellData* cells = output->GetCellData();
+  cells->AddArray(CopyArray<vtkLongLongArray>("Label", polylines.labels, count));
+  cells->AddArray(CopyArray<vtkLongLongArray>("Component", polylines.components, count));
+  cells->AddArray(CopyArray<vtkLongLongArray>("Slice", polylines.slices, count));
+}
+
+//------------------------------------------------------------------------------
+PolylineInput::PolylineInput(vtkPolyData* input)
+  : Input(input)
+{
+  this->View.line_count = static_cast<size_t>(input->GetNumberOfLines());
+  if (this->View.line_count == 0)
+  {
+    throw std::runtime_error(
+      "The input has no lines: this filter joins the polylines that Mid-Polylines makes.");
+  }
+  this->View.point_count = static_cast<size_t>(input->GetNumberOfPoints());
+  this->View.points = static_cast<const double*>(
+    this->PointValues(input->GetPoints()->GetData(), VTK_DOUBLE, this->Points));
+  vtkDataArray* thickness = input->GetPointData()->GetArray("Thickness");
+  if (thickness && thickness->GetNumberOfComponents() == 1)
+  {
+    this->View.thickness =
+      static_cast<const float*>(this->PointValues(thickness, VTK_FLOAT, this->Thickness));
+  }
+
+  this->Lines->ShallowCopy(input->GetLines());
+  if (!this->Lines->IsStorage64Bit() && !this->Lines->ConvertTo64BitStorage())
+  {
+    throw std::bad_alloc();
+  }
+  this->View.offsets =
+    reinterpret_cast<const int64_t*>(this->Lines->GetOffsetsArray64()->GetPointer(0));
+  this->View.connectivity =
+    reinterpret_cast<const int64_t*>(this->Lines->GetConnectivityArray64()->GetPointer(0));
+  this->View.connectivity_length =
+    static_cast<size_t>(this->Lines->GetConnectivityArray64()->GetNumberOfValues());
+
+  this->View.labels = this->LineValues("Label", this->Labels);
+  this->View.components = this->LineValues("Component", this->Components);
+  this->View.slices = this->LineValues("Slice", this->Slices);
+  if (!this->View.slices)
+  {
+    throw std::runtime_error(
+      "The lines have no cell array \"Slice\" that tells which slice of "
+      "the volume each lies in: use the polylines that Mid-Polylines makes.");
+  }
+}
+
+//------------------------------------------------------------------------------
+const void* PolylineInput::PointValues(
+  vtkDataArray* array, int type, vtkSmartPointer<vtkDataArray>& kept)
+{
+  kept = array;
+  if (array->GetDataType() != type || !array->HasStandardMemoryLayout())
+  {
+    kept.TakeReference(vtkDataArray::CreateDataArray(type));
+    kept->DeepCopy(array);
+  }
+  return kept->GetVoidPointer(0);
+}
+
+//------------------------------------------------------------------------------
+const int64_t* PolylineInput::LineValues(const char* name, vtkSmartPointer<vtkDataArray>& kept)
+{
+  vtkDataArray* array = this->Input->GetCellData()->GetArray(name);
+  if (!array || array->GetNumberOfComponents() != 1)
+  {
+    return nullptr;
+  }
+  kept = array;
+  const bool isInteger = array->GetDataType() == VTK_LONG_LONG ||
+    array->GetDataType() == VTK_LONG || array->GetDataType() == VTK_ID_TYPE;
+  if (!isInteger || array->GetDataTypeSize() != 8 || !array->HasStandardMemoryLayout())
+  {
+    kept.TakeReference(vtkDataArray::CreateDataArray(VTK_LONG_LONG));
+    kept->DeepCopy(array);
+  }
+  // Cell arrays begin with the vertex cells, which stand before the lines.
+  return static_cast<const int64_t*>(kept->GetVoidPointer(this->Input->GetNumberOfVerts()));
+}

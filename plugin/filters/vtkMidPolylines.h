@@ -1,0 +1,46 @@
+/**
+ * @class vtkMidPolylines
+ * @brief The lines of the mid-surface in every slice of a segmentation.
+ *
+ * Input: vtkImageData with labels, see vtkSegmentationFilter. Output: vtkPolyData with one polyline
+ * cell a line, in the image's world coordinates, double precision. A line is the cut of the
+ * mid-surface with a slice along the image's z axis; a closed line repeats its first point at its
+ * end. vtkPolylineZipper joins them to the mesh that vtkMidSurfaceFilter makes.
+ *
+ * - Point array `Thickness`: distance between both faces of the membrane, in world units.
+ * - Cell arrays `Label` and `Component`: as in vtkMidSurfaceFilter.
+ * - Cell array `Slice`: the index of the slice along z, in the image's extent.
+ */
+
+#ifndef vtkMidPolylines_h
+#define vtkMidPolylines_h
+
+#include "vtkSegmentationFilter.h"
+
+class vtkPolyData;
+
+class MIDSURFACEFILTERS_EXPORT vtkMidPolylines : public vtkSegmentationFilter
+{
+public:
+  static vtkMidPolylines* New();
+  vtkTypeMacro(vtkMidPolylines, vtkSegmentationFilter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The polylines, once updated.
+   */
+  vtkPolyData* GetOutput();
+
+protected:
+  vtkMidPolylines();
+  ~vtkMidPolylines() override;
+
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) override;
+
+private:
+  vtkMidPolylines(const vtkMidPolylines&) = delete;
+  void operator=(const vtkMidPolylines&) = delete;
+};
+
+#endif

@@ -1,0 +1,63 @@
+/**
+ * @class vtkMidSurfaceFilter
+ * @brief The mid-surface of every segmented membrane, as a triangle mesh.
+ *
+ * Input: vtkImageData with labels, see vtkSegmentationFilter. Output: vtkPolyData with triangles in
+ * the image's world coordinates, single precision: a 2-manifold with boundary, consistently wound
+ * in each component.
+ *
+ * - Point array `Normals`: unit normals, which agree with the winding.
+ * - Point array `Thickness`: distance between both faces of the membrane, in world units.
+ * - Cell array `Label`: the label a triangle belongs to.
+ * - Cell array `Component`: the connected part of the label, from 0; labels in ascending order,
+ *   within a label the largest part first.
+ */
+
+#ifndef vtkMidSurfaceFilter_h
+#define vtkMidSurfaceFilter_h
+
+#include "vtkSegmentationFilter.h"
+
+class vtkPolyData;
+
+class MIDSURFACEFILTERS_EXPORT vtkMidSurfaceFilter : public vtkSegmentationFilter
+{
+public:
+  static vtkMidSurfaceFilter* New();
+  vtkTypeMacro(vtkMidSurfaceFilter, vtkSegmentationFilter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Methods
+  {
+    POLYLINE_ZIPPER = 0
+  };
+
+  ///@{
+  /**
+   * How the mid-surface is found. POLYLINE_ZIPPER, the default: a line in every slice along z, the
+   * lines of neighbouring slices joined by triangles.
+   */
+  vtkSetMacro(Method, int);
+  vtkGetMacro(Method, int);
+  ///@}
+
+  /**
+   * The mesh, once updated.
+   */
+  vtkPolyData* GetOutput();
+
+protected:
+  vtkMidSurfaceFilter();
+  ~vtkMidSurfaceFilter() override;
+
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) override;
+
+  int Method = POLYLINE_ZIPPER;
+
+private:
+  vtkMidSurfaceFilter(const vtkMidSurfaceFilter&) = delete;
+  void operator=(const vtkMidSurfaceFilter&) = delete;
+};
+
+#endif

@@ -1,0 +1,39 @@
+#include "vtkPolylineZipper.h"
+
+#include "FilterRun.h"
+#include "PolyDataConversion.h"
+
+#include "vtkFieldData.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+
+vtkStandardNewMacro(vtkPolylineZipper);
+
+//------------------------------------------------------------------------------
+vtkPolylineZipper::vtkPolylineZipper() = default;
+
+//------------------------------------------------------------------------------
+vtkPolylineZipper::~vtkPolylineZipper() = default;
+
+//------------------------------------------------------------------------------
+void vtkPolylineZipper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Threads: " << this->Threads << "\n";
+}
+
+//------------------------------------------------------------------------------
+int vtkPolylineZipper::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+  vtkPolyData* output = vtkPolyData::GetData(outputVector);
+  return FilterRun::Execute(this, this->Threads, output, [input, output](FilterRun& run) {
+    const PolylineInput lines(input);
+    const midsurface::Polylines polylines = midsurface::MakePolylines(lines.Arrays());
+    const midsurface::Mesh mesh = midsurface::Zip(polylines, run.Options);
+    CopyMesh(midsurface::Arrays(mesh), output);
+    output->GetFieldData()->PassData(input->GetFieldData());
+  });
+}

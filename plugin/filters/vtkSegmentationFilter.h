@@ -1,0 +1,94 @@
+/**
+ * @class vtkSegmentationFilter
+ * @brief What the filters share that read labels from an image.
+ *
+ * The labels are the array that SetInputArrayToProcess(0, ...) names: one whole number a voxel, on
+ * points or on cells, 0 for background, of any numeric type. Default: the active scalars. With
+ * cells the surface lies on the grid of the cell centres.
+ *
+ * Which labels are extracted is told by name, as in GetLabels()->EnableArray("3"). Without a
+ * request, all are. A label that is asked for and not there is an error.
+ *
+ * Bad input is reported by an error or warning of the filter, and the output is empty. So it is,
+ * with a warning, after an abort.
+ */
+
+#ifndef vtkSegmentationFilter_h
+#define vtkSegmentationFilter_h
+
+#include "MidSurfaceFiltersModule.h"
+#include "vtkAlgorithm.h"
+
+#include <memory>
+
+class FilterRun;
+class SegmentationVolume;
+class vtkDataArraySelection;
+class vtkDataObject;
+
+class MIDSURFACEFILTERS_EXPORT vtkSegmentationFilter : public vtkAlgorithm
+{
+public:
+  vtkAbstractTypeMacro(vtkSegmentationFilter, vtkAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The labels asked for: "1", "3" and so on, on or off. Empty, the default: all labels. Where
+   * some are on: those. Where some are off and none is on: all but those. Where exactly the labels
+   * of GetFoundLabels() are on (off), it means all (none), also after the input has changed.
+   */
+  vtkDataArraySelection* GetLabels();
+
+  /**
+   * Turns one label of GetLabels() on or off.
+   */
+  void SetLabelStatus(const char* label, int status);
+
+  /**
+   * Empties GetLabels(), so that all labels are extracted.
+   */
+  void ClearLabels();
+
+  /**
+   * The labels that the input holds, on where they are going to be extracted. Not to be changed.
+   * Up to date once upstream and this filter's information or data have been updated.
+   */
+  vtkDataArraySelection* GetFoundLabels();
+
+  ///@{
+  /**
+   * Number of threads; 0, the default: one a core. The output does not depend on it.
+   */
+  vtkSetClampMacro(Threads, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Threads, int);
+  ///@}
+
+  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+protected:
+  vtkSegmentationFilter();
+  ~vtkSegmentationFilter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
+  int RequestData(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
+
+  /**
+   * Fills `output`. Exceptions become errors of the filter.
+   */
+  virtual void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) = 0;
+
+  int Threads = 0;
+
+private:
+  vtkSegmentationFilter(const vtkSegmentationFilter&) = delete;
+  void operator=(const vtkSegmentationFilter&) = delete;
+
+  void LabelsChanged();
+
+  class vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+};
+
+#endif

@@ -1,0 +1,33 @@
+#!/bin/sh
+# Fails where a layer knows what it must not. The core is plain Rust: no host application, no foreign
+# interface, nothing unsafe. The filters are wrappers: no file access, no threads of their own.
+cd "$(dirname "$0")/.." || exit 1
+status=0
+
+# forbid PATTERN REASON PATH...
+forbid() {
+  pattern=$1
+  reason=$2
+  shift 2
+  for path in "$@"; do
+    if [ ! -e "$path" ]; then
+      echo "missing: $path"
+      status=1
+    fi
+  done
+  if grep -rnE "$pattern" "$@"; then
+    echo "above: $reason"
+    status=1
+  fi
+}
+
+core=rust/midsurface/src
+forbid '[Vv][Tt][Kk]|[Pp]ara[Vv]iew' 'the core names its host' $core
+forbid '(^|[^_a-z])unsafe([^_a-z]|$)|extern "C"|no_mangle' \
+  'the core has a foreign interface or unsafe code' $core
+forbid 'std::(fs|net)|(^|[^a-z])e?print(ln)?!' 'the core reads, writes or prints' $core
+forbid 'std::(thread|async|fstream|ifstream|ofstream)|vtkSMPTools' \
+  'a filter does work that belongs into the core' plugin
+# VTK's wrapping tools read these headers, and programs that use the filters include them.
+forbid 'include .midsurface' 'a class header includes the C interface' plugin/filters/vtk*.h
+exit $status
