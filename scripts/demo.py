@@ -113,7 +113,8 @@ def aim(view, mesh):
     view.CameraFocalPoint = list(centre)
     view.CameraViewUp = [0, 0, 1]
     view.CameraViewAngle = 30
-    view.ResetCamera(True, 0.9)
+    simple.ResetCamera(view)
+    view.GetActiveCamera().Zoom(1.3)
 
 
 def draw(mid_surface, mesh, picture):
@@ -144,7 +145,7 @@ def main():
     mesh_file = os.path.join(folder, f"{name}-mid-surface.vtp")
     picture = os.path.join(folder, f"{name}-mid-surface.png")
     # Appended data, the default, is what Debian's ParaView cannot read back.
-    simple.SaveData(mesh_file, proxy=mid_surface, DataMode="Binary")
+    simple.SaveData(mesh_file, proxy=mid_surface, DataMode="Binary", CompressorType="ZLib")
     draw(mid_surface, mesh, picture)
     print_table(mesh, seconds)
     print(f"\nmesh:    {mesh_file}\npicture: {picture}")
