@@ -19,7 +19,7 @@
  *
  * Threads. There is no global state: any number of calls may run at once. An object never changes
  * once made, so that several threads may read it; one of them frees it. A call works on threads
- * of its own, which have ended when it returns. Callbacks come on the calling thread only.
+ * of its own and lets them go at its end. Callbacks come on the calling thread only.
  *
  * Volumes. Labels as they lie in memory, x fastest, then y, then z: voxel (x, y, z) is scalar
  * x + dimensions[0] * (y + dimensions[1] * z). World coordinates of its centre, with i the
@@ -251,7 +251,7 @@ typedef struct midsurface_mesh_arrays {
    */
   const int64_t *labels;
   /**
-   * Component of each triangle: the label's 26-connected component, from 0, ordered by label,
+   * Component of each triangle: the label's 26-connected component, numbered from 0 by label,
    * then by size, the largest first; triangle_count values.
    */
   const int64_t *components;
@@ -387,6 +387,17 @@ enum midsurface_status midsurface_mesh_view(const struct midsurface_mesh *mesh,
                                             struct midsurface_error **error);
 
 /**
+ * Checks that a mesh is a 2-manifold with boundary, consistently wound, with nothing duplicate,
+ * degenerate or unused. A mesh of this library is; a failure, with
+ * MIDSURFACE_STATUS_INVALID_ARGUMENT and a message that says what is wrong where, is a bug.
+ *
+ * mesh: the mesh.
+ * error: where an error goes; may be NULL.
+ */
+enum midsurface_status midsurface_mesh_check(const struct midsurface_mesh *mesh,
+                                             struct midsurface_error **error);
+
+/**
  * Frees a mesh. NULL is ignored.
  */
 void midsurface_mesh_free(struct midsurface_mesh *mesh);
@@ -441,7 +452,7 @@ void midsurface_polylines_free(struct midsurface_polylines *polylines);
  * Joins the polylines of neighbouring slices to a mesh.
  *
  * polylines: the polylines; they stay as they are.
- * options: as described there; labels may choose among those of the lines.
+ * options: as described there; options.labels is not looked at.
  * out: where the new mesh goes.
  * error: where an error goes; may be NULL.
  */
@@ -458,8 +469,8 @@ enum midsurface_status midsurface_zip(const struct midsurface_polylines *polylin
  * distance: the caller's array of one float a voxel, in the order of the scalars; it may be
  * uninitialised. Filled with the Euclidean distance of each labelled voxel to the nearest voxel
  * outside its label, in units of the spacing; 0 elsewhere.
- * ridge: another such array, not overlapping the first. Filled with the ridge field, a figure
- * without a unit; 0 away from the labels.
+ * ridge: another such array, not overlapping the first. Filled with the ridge field, in
+ * units of the spacing too; 0 away from the labels.
  * length: number of floats in each array; must be the number of voxels.
  * error: where an error goes; may be NULL. On failure the arrays' contents mean nothing.
  */

@@ -65,6 +65,15 @@ inline void Require(midsurface_status status, midsurface_error* error)
   }
 }
 
+/// Makes a call that takes no options.
+template <typename Function, typename... Arguments>
+void Call(Function function, Arguments... arguments)
+{
+  midsurface_error* error = nullptr;
+  const midsurface_status status = function(arguments..., &error);
+  Require(status, error);
+}
+
 /// The options as C takes them. What a callback throws waits here until the C code has returned.
 class Run
 {
@@ -180,8 +189,7 @@ inline void RidgeField(const midsurface_volume& volume, float* distance, float* 
 inline Polylines MakePolylines(const midsurface_polyline_arrays& arrays)
 {
   midsurface_polylines* polylines = nullptr;
-  midsurface_error* error = nullptr;
-  detail::Require(midsurface_polylines_new(&arrays, &polylines, &error), error);
+  detail::Call(midsurface_polylines_new, &arrays, &polylines);
   return Polylines(polylines);
 }
 
@@ -189,8 +197,7 @@ inline Polylines MakePolylines(const midsurface_polyline_arrays& arrays)
 inline midsurface_polyline_arrays Arrays(const Polylines& polylines)
 {
   midsurface_polyline_arrays arrays;
-  midsurface_error* error = nullptr;
-  detail::Require(midsurface_polylines_arrays(polylines.get(), &arrays, &error), error);
+  detail::Call(midsurface_polylines_arrays, polylines.get(), &arrays);
   return arrays;
 }
 
@@ -198,8 +205,7 @@ inline midsurface_polyline_arrays Arrays(const Polylines& polylines)
 inline midsurface_mesh_arrays Arrays(const Mesh& mesh)
 {
   midsurface_mesh_arrays arrays;
-  midsurface_error* error = nullptr;
-  detail::Require(midsurface_mesh_view(mesh.get(), &arrays, &error), error);
+  detail::Call(midsurface_mesh_view, mesh.get(), &arrays);
   return arrays;
 }
 

@@ -53,7 +53,7 @@ pub struct midsurface_mesh_arrays {
     pub triangle_count: usize,
     /// Label of each triangle: triangle_count values.
     pub labels: *const i64,
-    /// Component of each triangle: the label's 26-connected component, from 0, ordered by label,
+    /// Component of each triangle: the label's 26-connected component, numbered from 0 by label,
     /// then by size, the largest first; triangle_count values.
     pub components: *const i64,
 }
@@ -125,6 +125,26 @@ pub unsafe extern "C" fn midsurface_mesh_view(
                 components: address(&handle.components),
             });
             Ok(())
+        })
+    }
+}
+
+/// Checks that a mesh is a 2-manifold with boundary, consistently wound, with nothing duplicate,
+/// degenerate or unused. A mesh of this library is; a failure, with
+/// MIDSURFACE_STATUS_INVALID_ARGUMENT and a message that says what is wrong where, is a bug.
+///
+/// mesh: the mesh.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_mesh_check(
+    mesh: *const midsurface_mesh,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        guarded(error, || {
+            let violation = object(mesh, "mesh")?.mesh.check_invariants();
+            violation.map_err(|violation| midsurface_error::invalid(violation.to_string()))
         })
     }
 }

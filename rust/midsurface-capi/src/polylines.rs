@@ -150,7 +150,7 @@ pub unsafe extern "C" fn midsurface_polylines_free(polylines: *mut midsurface_po
 /// Joins the polylines of neighbouring slices to a mesh.
 ///
 /// polylines: the polylines; they stay as they are.
-/// options: as described there; labels may choose among those of the lines.
+/// options: as described there; options.labels is not looked at.
 /// out: where the new mesh goes.
 /// error: where an error goes; may be NULL.
 #[no_mangle]

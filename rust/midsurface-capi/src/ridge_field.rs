@@ -17,8 +17,8 @@ use crate::volume::{self, addresses, midsurface_volume};
 /// distance: the caller's array of one float a voxel, in the order of the scalars; it may be
 /// uninitialised. Filled with the Euclidean distance of each labelled voxel to the nearest voxel
 /// outside its label, in units of the spacing; 0 elsewhere.
-/// ridge: another such array, not overlapping the first. Filled with the ridge field, a figure
-/// without a unit; 0 away from the labels.
+/// ridge: another such array, not overlapping the first. Filled with the ridge field, in
+/// units of the spacing too; 0 away from the labels.
 /// length: number of floats in each array; must be the number of voxels.
 /// error: where an error goes; may be NULL. On failure the arrays' contents mean nothing.
 #[no_mangle]
