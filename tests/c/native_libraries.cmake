@@ -1,6 +1,8 @@
 # Asks rustc which native libraries the static library needs, and fails where CMake's target
 # (LINKED) and the C compiler's own (IMPLICIT) leave one out. The list does not depend on the
 # profile, so the quickest build will do.
+cmake_minimum_required(VERSION 3.16)
+
 set(list_file "${TARGET_FOLDER}/native-static-libs.txt")
 execute_process(
   COMMAND "${CARGO}" rustc --locked --quiet --package midsurface-capi --lib
