@@ -102,19 +102,31 @@ def colour(display, mid_surface, mesh):
 
 
 def aim(view, mesh):
-    """Looks down along z at a slant, along the longest side, the mesh filling the picture."""
-    bounds = np.array(mesh.GetBounds()).reshape(3, 2)
-    centre, size = bounds.mean(axis=1), np.ptp(bounds, axis=1)
-    distance = np.linalg.norm(size)
-    across, up = (0, 1) if size[0] >= size[1] else (1, 0)
-    eye = np.zeros(3)
-    eye[[across, up, 2]] = 0.25, -0.75, 1.0
-    view.CameraPosition = list(centre + 2 * distance * eye / np.linalg.norm(eye))
-    view.CameraFocalPoint = list(centre)
-    view.CameraViewUp = [0, 0, 1]
-    view.CameraViewAngle = 30
-    simple.ResetCamera(view)
-    view.GetActiveCamera().Zoom(1.3)
+    """Looks down along z at a slant, as close as the whole mesh fits into the picture."""
+    points = vtk_to_numpy(mesh.GetPoints().GetData()).astype(float)
+    size = np.ptp(points, axis=0)
+    towards = np.array([0.25, -0.75, 1.0] if size[0] >= size[1] else [-0.75, 0.25, 1.0])
+    towards /= np.linalg.norm(towards)
+    right = np.cross([0, 0, 1], towards)
+    right /= np.linalg.norm(right)
+    up = np.cross(towards, right)
+
+    middle = points.mean(axis=0)
+    for axis in (right, up):
+        along = (points - middle) @ axis
+        middle += 0.5 * (along.min() + along.max()) * axis
+    half_angle = np.radians(15)
+    height = np.tan(half_angle) * 0.9
+    width = height * view.ViewSize[0] / view.ViewSize[1] * 0.85  # room for the legend
+    from_middle = points - middle
+    distance = np.max(
+        from_middle @ towards
+        + np.maximum(np.abs(from_middle @ up) / height, np.abs(from_middle @ right) / width)
+    )
+    view.CameraViewAngle = 2 * np.degrees(half_angle)
+    view.CameraPosition = list(middle + distance * towards)
+    view.CameraFocalPoint = list(middle)
+    view.CameraViewUp = list(up)
 
 
 def draw(mid_surface, mesh, picture):
@@ -125,13 +137,18 @@ def draw(mid_surface, mesh, picture):
     view.Background = [1, 1, 1]
     view.OrientationAxesVisibility = 0
     display = simple.Show(mid_surface, view)
-    display.Specular = 0.25
-    display.Ambient = 0.08
+    display.Specular = 0.2
+    # A key light from the camera's side and much fill: no face of a membrane may go black.
+    view.KeyLightElevation, view.KeyLightIntensity = 30, 0.85
+    view.FillLightKFRatio = view.HeadLightKHRatio = 1.6
     table, legend = colour(display, mid_surface, mesh)
     bar = simple.GetScalarBar(table, view)
     bar.TitleColor = bar.LabelColor = [0.15, 0.15, 0.15]
     bar.Title = "" if table.InterpretValuesAsCategories else "Thickness"
     bar.ComponentTitle = ""
+    bar.TitleFontSize = bar.LabelFontSize = 20
+    bar.ScalarBarLength = 0.3 if bar.Title else 0.03 * len(table.Annotations)
+    bar.WindowLocation = "Upper Right Corner"
     display.SetScalarBarVisibility(view, legend)
     aim(view, mesh)
     simple.SaveScreenshot(picture, view, ImageResolution=[1600, 1000])
