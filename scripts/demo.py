@@ -23,9 +23,10 @@ MOST_LABELS_LISTED = 12
 
 def extract(volume_file):
     """The filter's proxy, its mesh and the seconds it took."""
-    reader = simple.OpenDataFile(volume_file)
-    if reader is None:
-        sys.exit(f"demo.py: ParaView has no reader for {volume_file}")
+    try:
+        reader = simple.OpenDataFile(volume_file)
+    except RuntimeError as error:
+        sys.exit(f"demo.py: ParaView cannot open this file: {error}")
     simple.UpdatePipeline(proxy=reader)
     mid_surface = simple.MidSurface(Input=reader)
     start = time.perf_counter()
@@ -146,6 +147,7 @@ def draw(mid_surface, mesh, picture):
     bar.TitleColor = bar.LabelColor = [0.15, 0.15, 0.15]
     bar.Title = "" if table.InterpretValuesAsCategories else "Thickness"
     bar.ComponentTitle = ""
+    bar.RangeLabelFormat = "%.3g"
     bar.TitleFontSize = bar.LabelFontSize = 20
     bar.ScalarBarLength = 0.3 if bar.Title else 0.03 * len(table.Annotations)
     bar.WindowLocation = "Upper Right Corner"

@@ -45,8 +45,14 @@ check "its mesh and picture" mesh_and_picture "tube with spaces"
 
 check "a file that is not there" fails_with_message "cannot be read" "$work/absent.mrc"
 echo "not a volume" >"$work/text.vti"
-check "a file that holds no volume" fails_with_message "no mesh was made" "$work/text.vti"
-echo "not a volume" >"$work/text.unknown"
-check "a file of an unknown kind" fails_with_message "no reader" "$work/text.unknown"
+check "a file that holds no volume" fails_with_message "cannot open" "$work/text.vti"
+cat >"$work/empty.vti" <<'VTI'
+<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian">
+<ImageData WholeExtent="0 1 0 1 0 1" Origin="0 0 0" Spacing="1 1 1">
+<Piece Extent="0 1 0 1 0 1"><PointData Scalars="Labels">
+<DataArray type="UInt8" Name="Labels" format="ascii">0 0 0 0 0 0 0 0</DataArray>
+</PointData></Piece></ImageData></VTKFile>
+VTI
+check "a volume without a label" fails_with_message "no mesh was made" "$work/empty.vti"
 
 echo "$passed passed, 0 failed"
