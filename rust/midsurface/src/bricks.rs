@@ -16,8 +16,6 @@ pub(crate) const EDGE: usize = 8;
 pub(crate) const LAYER: usize = EDGE * EDGE;
 /// Voxels in a brick.
 pub(crate) const BRICK: usize = EDGE * LAYER;
-/// Voxels around a part for which fields are kept: what interpolation near a face reaches.
-pub(crate) const MARGIN: usize = 3;
 
 const ABSENT: u32 = u32::MAX;
 
@@ -39,8 +37,9 @@ pub(crate) struct Directory {
 }
 
 impl Directory {
-    /// The bricks that `part` and its margin touch; the first one gets index `first`.
-    pub fn new(part: &Part, dimensions: [usize; 3], first: usize) -> Result<Self> {
+    /// The bricks that `part` and a margin of so many voxels along each axis touch; the first one
+    /// gets index `first`.
+    pub fn new(part: &Part, dimensions: [usize; 3], margin: [usize; 3], first: usize) -> Result<Self> {
         let reach = |run: &crate::runs::Run| -> [(usize, usize); 3] {
             [
                 (run.start as usize, run.end as usize - 1),
@@ -49,8 +48,8 @@ impl Directory {
             ]
         };
         let bricks = |axis: usize, (from, to): (usize, usize)| {
-            let last = (to + MARGIN).min(dimensions[axis] - 1);
-            (from.saturating_sub(MARGIN) / EDGE, last / EDGE)
+            let last = (to + margin[axis]).min(dimensions[axis] - 1);
+            (from.saturating_sub(margin[axis]) / EDGE, last / EDGE)
         };
         let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
         for run in &part.runs {
@@ -147,11 +146,17 @@ pub(crate) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    pub fn new(parts: &'a [Part], dimensions: [usize; 3]) -> Result<Self> {
+    /// Bricks for `parts`, with `margin(part, axis)` voxels around each.
+    pub fn new(
+        parts: &'a [Part],
+        dimensions: [usize; 3],
+        margin: impl Fn(usize, usize) -> usize,
+    ) -> Result<Self> {
         let mut directories = reserved(parts.len())?;
         let mut first = 0;
-        for part in parts {
-            let directory = Directory::new(part, dimensions, first)?;
+        for (i, part) in parts.iter().enumerate() {
+            let margin = std::array::from_fn(|axis| margin(i, axis));
+            let directory = Directory::new(part, dimensions, margin, first)?;
             first += directory.places.len();
             directories.push(directory);
         }

@@ -120,7 +120,7 @@ fn is_flat(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> bool {
 
 /// Whether points c and d share an edge; `around` is a half-edge that leaves c.
 fn joined(c: u32, d: u32, around: u32, triangles: &[[u32; 3]], twins: &[u32]) -> bool {
-    let mut touches = |e: u32| {
+    let touches = |e: u32| {
         let (_, q) = ends(triangles, e);
         let opposite = ends(triangles, next(next(e))).0;
         q == d || opposite == d

@@ -1,30 +1,19 @@
 //! Fields between the voxels: a cubic B-spline whose coefficients are the field's values.
 //!
-//! The spline adds a variance of 1/3 voxel to the Gaussian and makes the field twice continuously
-//! differentiable, so that gradient and Hessian are exact and a ridge does not snap to the grid,
-//! as it does under linear interpolation.
+//! The spline adds a variance of 1/3 voxel to the Gaussian and has no kinks at the voxels, so that
+//! where a field crosses a threshold does not snap to the grid, as under linear interpolation.
 
 use crate::bricks::{Directory, EDGE, LAYER};
 use crate::grid::Vec3;
 
-/// Values of the uniform cubic B-spline at offsets −1, 0, 1, 2 from the voxel below, with the
-/// first and second derivatives.
-fn basis(t: f64) -> [[f64; 4]; 3] {
+/// Values of the uniform cubic B-spline at offsets −1, 0, 1, 2 from the voxel below.
+fn basis(t: f64) -> [f64; 4] {
     let s = 1.0 - t;
     [
-        [
-            s * s * s / 6.0,
-            (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
-            (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0,
-            t * t * t / 6.0,
-        ],
-        [
-            -0.5 * s * s,
-            1.5 * t * t - 2.0 * t,
-            -1.5 * s * s + 2.0 * s,
-            0.5 * t * t,
-        ],
-        [s, 3.0 * t - 2.0, 3.0 * s - 2.0, t],
+        s * s * s / 6.0,
+        (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
+        (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0,
+        t * t * t / 6.0,
     ]
 }
 
@@ -34,14 +23,6 @@ pub(crate) struct Sampler<'a> {
     pub directory: &'a Directory,
     pub field: &'a [f32],
     pub h: Vec3,
-}
-
-/// Value and derivatives in a slice, work units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Planar {
-    pub gradient: [f64; 2],
-    /// Second derivatives xx, xy, yy.
-    pub hessian: [f64; 3],
 }
 
 impl Sampler<'_> {
@@ -102,52 +83,7 @@ impl Sampler<'_> {
     /// The value at (x, y) in slice z, work units.
     pub fn value(&self, at: [f64; 2], z: usize) -> f64 {
         let (window, t) = self.window(at, z);
-        contract(&window, &basis(t[0])[0], &basis(t[1])[0])
-    }
-
-    /// Gradient and Hessian at (x, y) in slice z.
-    pub fn planar(&self, at: [f64; 2], z: usize) -> Planar {
-        let (window, t) = self.window(at, z);
-        let (x, y) = (basis(t[0]), basis(t[1]));
-        let [hx, hy, _] = self.h;
-        Planar {
-            gradient: [
-                contract(&window, &x[1], &y[0]) / hx,
-                contract(&window, &x[0], &y[1]) / hy,
-            ],
-            hessian: [
-                contract(&window, &x[2], &y[0]) / (hx * hx),
-                contract(&window, &x[1], &y[1]) / (hx * hy),
-                contract(&window, &x[0], &y[2]) / (hy * hy),
-            ],
-        }
-    }
-
-    /// The Hessian in space at (x, y) in slice z: xx, yy, zz, xy, xz, yz. Along z the spline
-    /// sits on a slice, where its weights are 1/6, 2/3, 1/6.
-    pub fn hessian(&self, at: [f64; 2], z: usize) -> [f64; 6] {
-        let last = self.directory.dimensions[2] - 1;
-        let slices = [z.saturating_sub(1), z, (z + 1).min(last)];
-        let windows = slices.map(|z| self.window(at, z).0);
-        let t = self.window(at, z).1;
-        let (x, y) = (basis(t[0]), basis(t[1]));
-        let [hx, hy, hz] = self.h;
-        let along_z = |dx: usize, dy: usize, weights: [f64; 3]| -> f64 {
-            (0..3).map(|k| weights[k] * contract(&windows[k], &x[dx], &y[dy])).sum()
-        };
-        let value = [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0];
-        // One-sided at the first and the last slice, where two of the windows are the same.
-        let span = (slices[2] - slices[0]).max(1) as f64;
-        let slope = [-1.0 / span, 0.0, 1.0 / span];
-        let bend = if span == 2.0 { [1.0, -2.0, 1.0] } else { [0.0; 3] };
-        [
-            along_z(2, 0, value) / (hx * hx),
-            along_z(0, 2, value) / (hy * hy),
-            along_z(0, 0, bend) / (hz * hz),
-            along_z(1, 1, value) / (hx * hy),
-            along_z(1, 0, slope) / (hx * hz),
-            along_z(0, 1, slope) / (hy * hz),
-        ]
+        contract(&window, &basis(t[0]), &basis(t[1]))
     }
 }
 

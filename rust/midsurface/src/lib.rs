@@ -25,6 +25,7 @@
 mod bricks;
 mod components;
 mod distance;
+mod eigen;
 mod error;
 mod execution;
 mod flips;
@@ -37,6 +38,8 @@ mod polylines;
 mod quality;
 mod ridge;
 mod runs;
+mod separable;
+mod sheet;
 mod slice;
 mod strip;
 mod thickness;
@@ -221,8 +224,7 @@ fn for_each_batch(
         let (from, to) = (share(done), share(done + voxels));
         let middle = 0.5 * (from + to);
         execution.stage("Computing the ridge field", from, middle)?;
-        let batch = Batch::new(parts, volume.grid.dimensions)?;
-        let field = ridge::ridge_field(&batch, h, execution)?;
+        let (batch, field) = ridge::ridge_field(parts, volume.grid.dimensions, h, execution)?;
         execution.stage("Tracing mid-polylines", middle, to)?;
         work(&batch, &field, execution)?;
         done += voxels;

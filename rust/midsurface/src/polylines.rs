@@ -6,7 +6,7 @@
 //! the slices, as at the caps of a closed surface, a component is a disk without a mid-line: it is
 //! counted, and the caller says so.
 
-use crate::bricks::Batch;
+use crate::bricks::{Batch, Directory};
 use crate::components::Part;
 use crate::error::Result;
 use crate::execution::Execution;
@@ -90,13 +90,8 @@ pub(crate) fn polylines(
     execution.stream(
         &jobs,
         |&(part, runs)| {
-            let sampler = |values| Sampler {
-                directory: &batch.directories[part],
-                field: values,
-                h,
-            };
-            let samplers = [&field.ridge, &field.fraction, &field.distance].map(|f| sampler(f));
-            trace_slice(samplers, runs)
+            let directory = &batch.directories[part];
+            trace_slice(PartField { directory, field, h }, runs)
         },
         |found: SliceLines| {
             disks += found.disks;
@@ -109,26 +104,46 @@ pub(crate) fn polylines(
     Ok(disks)
 }
 
+/// The fields of a part.
+#[derive(Clone, Copy)]
+struct PartField<'a> {
+    directory: &'a Directory,
+    field: &'a RidgeField,
+    h: Vec3,
+}
+
+impl<'a> PartField<'a> {
+    fn sampler(&self, field: &'a [f32]) -> Sampler<'a> {
+        Sampler {
+            directory: self.directory,
+            field,
+            h: self.h,
+        }
+    }
+
+    /// Thickness of the label at a point of a slice, work units.
+    fn thickness(&self, slice: &Slice, p: Point) -> f64 {
+        let from = [p[0], p[1], slice.z as f64 * self.h[2]];
+        let distance = self.sampler(&self.field.distance);
+        slice.sheet(p).map_or(0.0, |(normal, _)| thickness(&distance, from, normal))
+    }
+}
+
 /// All lines of one slice of a part.
-fn trace_slice([ridge, fraction, distance]: [Sampler; 3], runs: &[Run]) -> SliceLines {
+fn trace_slice(part: PartField, runs: &[Run]) -> SliceLines {
     let z = runs[0].z as usize;
-    let mut slice = Slice::new(ridge, fraction, z);
+    let mut slice = Slice::new(part.sampler(&part.field.fraction), &part.field.sheets, z);
     let mut found = SliceLines::default();
     for (number, pixels) in slice.components(runs).into_iter().enumerate() {
         let component = number as u32;
         let mut regions = vec![(pixels, 0)];
         let mut primary = true;
         while let Some((pixels, attempt)) = regions.pop() {
-            let line = trace_region(&mut slice, &pixels, component, primary);
-            if line.is_none() && primary {
-                found.disks += 1;
-                break;
-            }
-            primary = false;
+            let line = trace_region(part, &mut slice, &pixels, component, primary);
+            primary &= line.is_none();
             let attempt = if line.is_some() { 0 } else { attempt + 1 };
             if let Some(line) = line {
-                let thickness = line.points.iter().map(|&p| thickness(&ridge, &distance, p, z));
-                let thickness = thickness.collect();
+                let thickness = line.points.iter().map(|&p| part.thickness(&slice, p)).collect();
                 found.lines.push((line, thickness));
             }
             if attempt < ATTEMPTS {
@@ -137,17 +152,24 @@ fn trace_slice([ridge, fraction, distance]: [Sampler; 3], runs: &[Run]) -> Slice
                 regions.extend(rest.map(|region| (region, attempt)));
             }
         }
+        found.disks += usize::from(primary);
     }
     found
 }
 
 /// The line from the peak of a region, `None` where there is none worth keeping. Covers what
 /// belongs to the line, or the start of a line that is not kept.
-fn trace_region(slice: &mut Slice, pixels: &[Pixel], component: u32, primary: bool) -> Option<Trace> {
+fn trace_region(
+    part: PartField,
+    slice: &mut Slice,
+    pixels: &[Pixel],
+    component: u32,
+    primary: bool,
+) -> Option<Trace> {
     let unit = slice.h()[0].min(slice.h()[1]);
     let peak = pixels
         .iter()
-        .map(|&p| (slice.ridge.value(slice.centre(p), slice.z), p))
+        .map(|&p| (part.field.ridge[part.directory.entry([p[0], p[1], slice.z]).unwrap_or(0)], p))
         .reduce(|best, next| if next.0 > best.0 { next } else { best })?
         .1;
     let start = slice.centre(peak);
@@ -252,9 +274,7 @@ fn resample(slice: &Slice, line: &Trace, spacing: f64) -> Option<Trace> {
         let t = ((target - passed) / distance(a, b).max(1e-12)).clamp(0.0, 1.0);
         let p = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
         let end = !line.closed && (k == 0 || k == segments);
-        let along = [(b[0] - a[0]), (b[1] - a[1])];
-        let norm = along[0].hypot(along[1]).max(1e-12);
-        points.push(if end { p } else { crest(slice, p, [along[0] / norm, along[1] / norm]) });
+        points.push(if end { p } else { crest(slice, p).unwrap_or(p) });
     }
     if line.closed {
         points.pop();

@@ -2,9 +2,10 @@
 
 use crate::bricks::{Directory, EDGE, LAYER};
 use crate::components::DisjointSets;
-use crate::grid::Vec3;
+use crate::grid::{along, dot, unit, Vec3};
 use crate::interpolation::Sampler;
 use crate::runs::Run;
+use crate::sheet::Sheet;
 
 /// A pixel as column and row.
 pub(crate) type Pixel = [usize; 2];
@@ -24,8 +25,8 @@ const NOWHERE: u32 = u32::MAX;
 /// One slice of a part.
 pub(crate) struct Slice<'a> {
     pub z: usize,
-    pub ridge: Sampler<'a>,
     pub fraction: Sampler<'a>,
+    sheets: &'a [Sheet],
     /// First brick of the slice's brick layer.
     first_brick: usize,
     component: Vec<u32>,
@@ -34,12 +35,12 @@ pub(crate) struct Slice<'a> {
 
 impl<'a> Slice<'a> {
     /// An empty slice over the bricks of the part at height `z`.
-    pub fn new(ridge: Sampler<'a>, fraction: Sampler<'a>, z: usize) -> Self {
-        let layer = ridge.directory.layer(z / EDGE);
+    pub fn new(fraction: Sampler<'a>, sheets: &'a [Sheet], z: usize) -> Self {
+        let layer = fraction.directory.layer(z / EDGE);
         Self {
             z,
-            ridge,
             fraction,
+            sheets,
             first_brick: layer.start,
             component: vec![NOWHERE; layer.len() * LAYER],
             flags: vec![0; layer.len() * LAYER],
@@ -48,11 +49,11 @@ impl<'a> Slice<'a> {
 
     /// Work spacing.
     pub fn h(&self) -> Vec3 {
-        self.ridge.h
+        self.fraction.h
     }
 
-    fn directory(&self) -> &Directory {
-        self.ridge.directory
+    pub fn directory(&self) -> &Directory {
+        self.fraction.directory
     }
 
     fn entry(&self, x: isize, y: isize) -> Option<usize> {
@@ -74,6 +75,36 @@ impl<'a> Slice<'a> {
     pub fn centre(&self, pixel: Pixel) -> Point {
         let h = self.h();
         [pixel[0] as f64 * h[0], pixel[1] as f64 * h[1]]
+    }
+
+    /// Normal of the sheet and offset to its middle at a point, linear between the pixels that know
+    /// it; `None` where those have less than a quarter of the weight.
+    pub fn sheet(&self, p: Point) -> Option<(Vec3, f64)> {
+        let (h, n) = (self.h(), self.directory().dimensions);
+        let at: [f64; 2] = std::array::from_fn(|a| (p[a] / h[a]).clamp(0.0, (n[a] - 1) as f64));
+        let low = at.map(f64::floor);
+        let t = [at[0] - low[0], at[1] - low[1]];
+        let mut corners = [(0.0, Sheet::default()); 4];
+        for (k, corner) in corners.iter_mut().enumerate() {
+            let weight = [1.0 - t[0], t[0]][k % 2] * [1.0 - t[1], t[1]][k / 2];
+            let voxel = [low[0] as usize + k % 2, low[1] as usize + k / 2, self.z];
+            if let (true, Some(entry)) = (weight > 0.0, self.directory().entry(voxel)) {
+                *corner = (weight, self.sheets[entry]);
+            }
+        }
+        let known = |c: &(f64, Sheet)| c.1.normal != [0.0; 3];
+        let first = corners.iter().filter(|c| known(c)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let first = first.1.normal.map(f64::from);
+        let (mut normal, mut offset, mut total) = ([0.0; 3], 0.0, 0.0);
+        for (weight, sheet) in corners.iter().filter(|c| known(c)) {
+            let n = sheet.normal.map(f64::from);
+            // Normals have no sign of their own: all turned like the first.
+            let signed = weight.copysign(dot(n, first));
+            normal = along(normal, signed, n);
+            offset += signed * f64::from(sheet.offset);
+            total += weight;
+        }
+        (total >= 0.25).then(|| (unit(normal), offset / total))
     }
 
     /// Finds the slice's components (8 neighbours) and marks their pixels with their numbers.
@@ -128,6 +159,12 @@ impl<'a> Slice<'a> {
     pub fn inside(&self, p: Point) -> bool {
         let (h, n) = (self.h(), self.directory().dimensions);
         (0..2).all(|a| p[a] >= 0.0 && p[a] <= (n[a] - 1) as f64 * h[a])
+    }
+
+    /// The nearest point within the volume.
+    pub fn clamp(&self, p: Point) -> Point {
+        let (h, n) = (self.h(), self.directory().dimensions);
+        std::array::from_fn(|a| p[a].clamp(0.0, (n[a] - 1) as f64 * h[a]))
     }
 
     /// Whether `flag` is set on a pixel.

@@ -1,17 +1,14 @@
 //! Local thickness: the distance between both faces of the label through a point.
 
-use crate::grid::{along, unit, Vec3};
+use crate::grid::{along, Vec3};
 use crate::interpolation::Sampler;
 
 /// Step along the ray, work units; the face is then found by linear interpolation.
 const STEP: f64 = 0.25;
 
-/// Thickness at (x, y) in slice z, work units. The ray runs both ways along the normal of the
-/// ridge; where one way leaves the volume, the thickness is twice the other's length.
-pub(crate) fn thickness(ridge: &Sampler, distance: &Sampler, at: [f64; 2], z: usize) -> f64 {
-    let normal = ridge_normal(ridge.hessian(at, z));
-    let h = distance.h;
-    let from = [at[0], at[1], z as f64 * h[2]];
+/// Thickness at a point, work units. The ray runs both ways along the sheet's normal; where one
+/// way leaves the volume, the thickness is twice the other's length.
+pub(crate) fn thickness(distance: &Sampler, from: Vec3, normal: Vec3) -> f64 {
     match (face(distance, from, normal), face(distance, from, normal.map(|v| -v))) {
         (Reach::Face(a), Reach::Face(b)) => a + b,
         (Reach::Face(a), Reach::Border(_)) | (Reach::Border(_), Reach::Face(a)) => 2.0 * a,
@@ -64,38 +61,4 @@ fn labelled(distance: &Sampler, p: Vec3) -> Option<f64> {
         }
     }
     Some(sum)
-}
-
-/// The eigenvector of the most negative eigenvalue of a Hessian xx, yy, zz, xy, xz, yz, by Jacobi
-/// rotations.
-fn ridge_normal([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Vec3 {
-    let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let mut vectors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    for _ in 0..8 {
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            rotate(&mut a, &mut vectors, p, q);
-        }
-    }
-    let least = (0..3).fold(0, |best, i| if a[i][i] < a[best][best] { i } else { best });
-    unit([vectors[0][least], vectors[1][least], vectors[2][least]])
-}
-
-/// One Jacobi rotation, which zeroes a[p][q].
-fn rotate(a: &mut [Vec3; 3], vectors: &mut [Vec3; 3], p: usize, q: usize) {
-    if a[p][q].abs() < 1e-300 {
-        return;
-    }
-    let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-    let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-    let c = 1.0 / (t * t + 1.0).sqrt();
-    let s = t * c;
-    for row in a.iter_mut() {
-        (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
-    }
-    for k in 0..3 {
-        (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
-    }
-    for row in vectors.iter_mut() {
-        (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
-    }
 }
