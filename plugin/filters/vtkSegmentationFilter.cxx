@@ -33,12 +33,21 @@ public:
     return chosen;
   }
 
-  /** What upstream made last may still be there before it runs again: that is shown meanwhile. */
+  /**
+   * What upstream made last may still be there before it runs again: that is shown meanwhile.
+   * During a run the executive may go through the blocks of a composite input, and shows nothing
+   * else; the labels are those of all blocks, found when the run started.
+   */
   void FindLabels(vtkSegmentationFilter* self)
   {
-    this->Labels.Update([self](vtkImageData* image) { return Find(self, image); }, ChoiceTime(self),
-      self->GetInputDataObject(0, 0), self->Threads);
+    if (!this->Running)
+    {
+      this->Labels.Update([self](vtkImageData* image) { return Find(self, image); },
+        ChoiceTime(self), self->GetInputDataObject(0, 0), self->Threads);
+    }
   }
+
+  bool Running = false;
 };
 
 //------------------------------------------------------------------------------
@@ -51,6 +60,8 @@ vtkSegmentationFilter::vtkSegmentationFilter()
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, vtkDataSetAttributes::SCALARS);
   this->GetLabels()->AddObserver(
     vtkCommand::ModifiedEvent, this, &vtkSegmentationFilter::LabelsChanged);
+  this->AddObserver(vtkCommand::StartEvent, this, &vtkSegmentationFilter::RunStarts);
+  this->AddObserver(vtkCommand::EndEvent, this, &vtkSegmentationFilter::RunEnds);
 }
 
 //------------------------------------------------------------------------------
@@ -65,6 +76,12 @@ void vtkSegmentationFilter::PrintSelf(ostream& os, vtkIndent indent)
   this->GetLabels()->PrintSelf(os, indent.GetNextIndent());
   os << indent << "FoundLabels:\n";
   this->GetFoundLabels()->PrintSelf(os, indent.GetNextIndent());
+}
+
+//------------------------------------------------------------------------------
+void vtkSegmentationFilter::SetInputData(vtkImageData* image)
+{
+  this->SetInputDataInternal(0, image);
 }
 
 //------------------------------------------------------------------------------
@@ -96,6 +113,19 @@ void vtkSegmentationFilter::LabelsChanged()
 {
   this->Internals->Labels.RequestChanged(vtkInternals::ChoiceTime(this));
   this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkSegmentationFilter::RunStarts()
+{
+  this->Internals->FindLabels(this);
+  this->Internals->Running = true;
+}
+
+//------------------------------------------------------------------------------
+void vtkSegmentationFilter::RunEnds()
+{
+  this->Internals->Running = false;
 }
 
 //------------------------------------------------------------------------------
@@ -153,7 +183,6 @@ int vtkSegmentationFilter::RequestData(
       return;
     }
     const SegmentationVolume volume(input, vtkInternals::Find(this, input));
-    this->Internals->FindLabels(this);
     this->Internals->Labels.Apply(run, volume);
     this->Extract(run, volume, output);
     output->GetFieldData()->PassData(input->GetFieldData());

@@ -25,12 +25,18 @@ class FilterRun;
 class SegmentationVolume;
 class vtkDataArraySelection;
 class vtkDataObject;
+class vtkImageData;
 
 class MIDSURFACEFILTERS_EXPORT vtkSegmentationFilter : public vtkAlgorithm
 {
 public:
   vtkAbstractTypeMacro(vtkSegmentationFilter, vtkAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The image to work on, where it does not come from another filter.
+   */
+  void SetInputData(vtkImageData* image);
 
   /**
    * The labels asked for: "1", "3" and so on, on or off. Empty, the default: all labels. Where
@@ -86,6 +92,8 @@ private:
   void operator=(const vtkSegmentationFilter&) = delete;
 
   void LabelsChanged();
+  void RunStarts();
+  void RunEnds();
 
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

@@ -1,0 +1,64 @@
+"""Names, defaults and places of the filters in ParaView."""
+
+from paraview import servermanager, simple
+
+from pipeline import FilterTest, arrays, image, run_tests, sheets, source, update
+
+
+class Properties(FilterTest):
+    def test_mid_surface_has_its_properties(self):
+        proxy = simple.MidSurface(Input=source(image(sheets())))
+        self.assertEqual(list(proxy.Segmentation), ["POINTS", "labels"])
+        self.assertEqual(list(proxy.Labels), ["1", "2", "3"])
+        self.assertEqual(proxy.Method, "Polyline zipper")
+        self.assertEqual(proxy.Threads, 0)
+        self.assertEqual(list(proxy.GetProperty("Method").GetAvailable()), ["Polyline zipper"])
+
+    def test_stages_have_theirs(self):
+        for create in (simple.RidgeField, simple.MidPolylines):
+            proxy = create(Input=source(image(sheets())))
+            self.assertEqual(list(proxy.Segmentation), ["POINTS", "labels"])
+            self.assertEqual(list(proxy.Labels), ["1", "2", "3"])
+            self.assertEqual(proxy.Threads, 0)
+            self.assertNotIn("Method", proxy.ListProperties())
+        zipper = simple.PolylineZipper(Input=simple.MidPolylines(Input=source(image(sheets()))))
+        self.assertEqual(zipper.Threads, 0)
+
+    def test_menu_and_help(self):
+        manager = servermanager.ProxyManager().SMProxyManager
+        for name, category in (
+            ("MidSurface", "Mid-Surface"),
+            ("RidgeField", "Mid-Surface Stages"),
+            ("MidPolylines", "Mid-Surface Stages"),
+            ("PolylineZipper", "Mid-Surface Stages"),
+        ):
+            prototype = manager.GetPrototypeProxy("filters", name)
+            hint = prototype.GetHints().FindNestedElementByName("ShowInMenu")
+            self.assertEqual(hint.GetAttribute("category"), category)
+            self.assertTrue(hint.GetAttribute("icon"))
+            help_text = prototype.GetDocumentation()
+            self.assertTrue(help_text.GetShortHelp() and help_text.GetLongHelp())
+            self.assertGreater(len(help_text.GetDescription()), 200)
+
+    def test_threads_are_advanced(self):
+        proxy = simple.MidSurface(Input=source(image(sheets())))
+        for name, visibility in (("Threads", "advanced"), ("Method", "default")):
+            self.assertEqual(
+                proxy.SMProxy.GetProperty(name).GetPanelVisibility(), visibility, name
+            )
+
+    def test_negative_threads_mean_all(self):
+        quiet = arrays(update(simple.MidSurface(Input=source(image(sheets())), Threads=-3))[0])
+        self.assertGreater(len(quiet["polys"]), 0)
+
+    def test_unknown_method_is_an_error(self):
+        proxy = simple.MidSurface(Input=source(image(sheets())))
+        proxy.SMProxy.GetProperty("Method").SetElement(0, 77)
+        proxy.SMProxy.UpdateVTKObjects()
+        mesh, messages = update(proxy)
+        self.assert_empty(mesh)
+        self.assertEqual(len(messages.errors), 1)
+
+
+if __name__ == "__main__":
+    run_tests()
