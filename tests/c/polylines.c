@@ -218,6 +218,42 @@ static void lines_that_face_each_other_are_joined(void)
   midsurface_polylines_free(lines);
 }
 
+static void the_order_of_lines_does_not_matter(void)
+{
+  struct drawing drawing = good_drawing;
+  drawing.slices[0] = 1; /* the upper line first */
+  drawing.slices[1] = 0;
+  for (int p = 0; p < 4; p++)
+  {
+    drawing.points[p][2] = 1.0 - drawing.points[p][2];
+  }
+  const midsurface_polyline_arrays arrays = arrays_of_drawing(&drawing);
+  const midsurface_options options = midsurface_options_default();
+  midsurface_polylines* lines = drawn(&arrays);
+  midsurface_error* error = NULL;
+  midsurface_mesh* mesh = NULL;
+  CHECK_SUCCEEDS(midsurface_zip(lines, &options, &mesh, &error), error);
+  CHECK_SUCCEEDS(midsurface_mesh_check(mesh, &error), error);
+  CHECK(arrays_of(mesh).triangle_count == 2);
+  midsurface_mesh_free(mesh);
+  midsurface_polylines_free(lines);
+}
+
+static void lines_that_leave_their_slice_are_refused(void)
+{
+  struct drawing drawing = good_drawing;
+  drawing.points[1][2] = 0.5;
+  const midsurface_polyline_arrays arrays = arrays_of_drawing(&drawing);
+  const midsurface_options options = midsurface_options_default();
+  midsurface_polylines* lines = drawn(&arrays);
+  midsurface_error* error = NULL;
+  midsurface_mesh* mesh = STALE(midsurface_mesh);
+  CHECK_INVALID(
+    midsurface_zip(lines, &options, &mesh, &error), error, "polylines cannot be joined");
+  midsurface_mesh_free(mesh);
+  midsurface_polylines_free(lines);
+}
+
 static void refused(const midsurface_polyline_arrays* arrays, const char* text)
 {
   midsurface_error* error = STALE(midsurface_error);
@@ -308,6 +344,8 @@ void test_polylines(void)
   RUN(arrays_are_copied_as_they_are);
   RUN(arrays_that_may_be_null_have_defaults);
   RUN(lines_that_face_each_other_are_joined);
+  RUN(the_order_of_lines_does_not_matter);
+  RUN(lines_that_leave_their_slice_are_refused);
   RUN(null_arrays_are_named);
   RUN(broken_indices_are_refused);
   RUN(broken_values_are_refused);
