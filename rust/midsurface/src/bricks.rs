@@ -9,6 +9,7 @@
 
 use crate::components::Part;
 use crate::error::{filled, reserved, Result};
+use crate::runs::Run;
 
 /// Voxels along a brick's edge.
 pub(crate) const EDGE: usize = 8;
@@ -16,6 +17,9 @@ pub(crate) const EDGE: usize = 8;
 pub(crate) const LAYER: usize = EDGE * EDGE;
 /// Voxels in a brick.
 pub(crate) const BRICK: usize = EDGE * LAYER;
+
+/// How many voxels around a part interpolation near its faces reaches.
+pub(crate) const NEAR: usize = 3;
 
 const ABSENT: u32 = u32::MAX;
 
@@ -40,22 +44,9 @@ impl Directory {
     /// The bricks that `part` and a margin of so many voxels along each axis touch; the first one
     /// gets index `first`.
     pub fn new(part: &Part, dimensions: [usize; 3], margin: [usize; 3], first: usize) -> Result<Self> {
-        let reach = |run: &crate::runs::Run| -> [(usize, usize); 3] {
-            [
-                (run.start as usize, run.end as usize - 1),
-                (run.y as usize, run.y as usize),
-                (run.z as usize, run.z as usize),
-            ]
-        };
-        let bricks = |axis: usize, (from, to): (usize, usize)| {
-            let last = (to + margin[axis]).min(dimensions[axis] - 1);
-            (from.saturating_sub(margin[axis]) / EDGE, last / EDGE)
-        };
         let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
         for run in &part.runs {
-            let reach = reach(run);
-            for axis in 0..3 {
-                let (from, to) = bricks(axis, reach[axis]);
+            for (axis, (from, to)) in brick_range(run, margin, dimensions).into_iter().enumerate() {
                 low[axis] = low[axis].min(from);
                 high[axis] = high[axis].max(to);
             }
@@ -70,8 +61,7 @@ impl Directory {
             first,
         };
         for run in &part.runs {
-            let [x, y, z] = reach(run);
-            let (x, y, z) = (bricks(0, x), bricks(1, y), bricks(2, z));
+            let [x, y, z] = brick_range(run, margin, dimensions);
             for bz in z.0..=z.1 {
                 for by in y.0..=y.1 {
                     let row = directory.cell([x.0, by, bz]);
@@ -81,6 +71,16 @@ impl Directory {
         }
         directory.number_bricks()?;
         Ok(directory)
+    }
+
+    /// Calls `f` with the bricks that a run and a margin around it touch.
+    pub fn for_each_brick(&self, run: &Run, margin: [usize; 3], mut f: impl FnMut(usize)) {
+        let [x, y, z] = brick_range(run, margin, self.dimensions);
+        for bz in z.0..=z.1 {
+            for by in y.0..=y.1 {
+                (x.0..=x.1).filter_map(|bx| self.brick([bx, by, bz])).for_each(&mut f);
+            }
+        }
     }
 
     fn number_bricks(&mut self) -> Result<()> {
@@ -137,12 +137,25 @@ impl Directory {
     }
 }
 
+/// First and last brick along each axis of a run with a margin, within the volume.
+fn brick_range(run: &Run, margin: [usize; 3], dimensions: [usize; 3]) -> [(usize, usize); 3] {
+    let (y, z) = (run.y as usize, run.z as usize);
+    let voxels = [(run.start as usize, run.end as usize - 1), (y, y), (z, z)];
+    std::array::from_fn(|a| {
+        let last = (voxels[a].1 + margin[a]).min(dimensions[a] - 1);
+        (voxels[a].0.saturating_sub(margin[a]) / EDGE, last / EDGE)
+    })
+}
+
 /// The parts that are worked on at once, with their bricks numbered through.
 pub(crate) struct Batch<'a> {
     pub parts: &'a [Part],
     pub directories: Vec<Directory>,
     /// Part of each brick, as an index into `parts`.
     pub part_of_brick: Vec<u32>,
+    /// Whether a brick is within [`NEAR`] voxels of its part; the others only carry what a filter
+    /// passes on between its axes.
+    pub core: Vec<bool>,
 }
 
 impl<'a> Batch<'a> {
@@ -164,10 +177,17 @@ impl<'a> Batch<'a> {
         for (part, directory) in directories.iter().enumerate() {
             part_of_brick.resize(directory.first + directory.places.len(), part as u32);
         }
+        let mut core = filled(first, false)?;
+        for (part, directory) in parts.iter().zip(&directories) {
+            for run in &part.runs {
+                directory.for_each_brick(run, [NEAR; 3], |brick| core[brick] = true);
+            }
+        }
         Ok(Self {
             parts,
             directories,
             part_of_brick,
+            core,
         })
     }
 

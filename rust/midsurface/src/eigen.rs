@@ -1,45 +1,55 @@
-//! Eigenvectors of symmetric 3 × 3 matrices, by Jacobi rotations.
+//! Eigenvalues and eigenvectors of symmetric 3 × 3 matrices, in closed form.
 
-use crate::grid::Vec3;
+use crate::grid::{cross, dot, unit, Vec3};
 
 /// A symmetric matrix as xx, yy, zz, xy, xz, yz.
 pub(crate) type Symmetric = [f64; 6];
 
-/// Eigenvalues in ascending order, with their unit eigenvectors.
-pub(crate) fn eigen([xx, yy, zz, xy, xz, yz]: Symmetric) -> [(f64, Vec3); 3] {
-    let mut a = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let scale = xx.abs().max(yy.abs()).max(zz.abs()).max(xy.abs()).max(xz.abs()).max(yz.abs());
-    // Convergence is quadratic: after four sweeps nothing is left off the diagonal.
-    for _ in 0..6 {
-        if a[0][1].abs().max(a[0][2].abs()).max(a[1][2].abs()) <= 1e-12 * scale {
-            break;
-        }
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            rotate(&mut a, &mut v, p, q);
-        }
+/// The eigenvalues in ascending order (Smith 1961, by the trigonometric solution of the cubic).
+pub(crate) fn eigenvalues([xx, yy, zz, xy, xz, yz]: Symmetric) -> Vec3 {
+    let mean = (xx + yy + zz) / 3.0;
+    let (a, b, c) = (xx - mean, yy - mean, zz - mean);
+    let p = ((a * a + b * b + c * c + 2.0 * (xy * xy + xz * xz + yz * yz)) / 6.0).sqrt();
+    if p <= f64::MIN_POSITIVE {
+        return [mean; 3];
     }
-    let mut order = [0, 1, 2].map(|i| (a[i][i], [v[0][i], v[1][i], v[2][i]]));
-    order.sort_by(|x, y| x.0.total_cmp(&y.0));
-    order
+    let determinant =
+        a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
+    let angle = (determinant / (2.0 * p * p * p)).clamp(-1.0, 1.0).acos() / 3.0;
+    let turn = 2.0 * std::f64::consts::FRAC_PI_3;
+    let largest = mean + 2.0 * p * angle.cos();
+    let smallest = mean + 2.0 * p * (angle + turn).cos();
+    [smallest, 3.0 * mean - largest - smallest, largest]
 }
 
-/// One Jacobi rotation, which zeroes a[p][q].
-fn rotate(a: &mut [Vec3; 3], v: &mut [Vec3; 3], p: usize, q: usize) {
-    if a[p][q] == 0.0 {
-        return;
-    }
-    let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-    let t = 1f64.copysign(theta) / (theta.abs() + (theta * theta + 1.0).sqrt());
-    let c = 1.0 / (t * t + 1.0).sqrt();
-    let s = t * c;
-    for row in a.iter_mut() {
-        (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
-    }
-    for k in 0..3 {
-        (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
-    }
-    for row in v.iter_mut() {
-        (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+/// The unit eigenvector of a simple eigenvalue: what is across the rows of A − λ I. Zero where the
+/// eigenvalue is not simple.
+pub(crate) fn eigenvector([xx, yy, zz, xy, xz, yz]: Symmetric, value: f64) -> Vec3 {
+    let rows = [[xx - value, xy, xz], [xy, yy - value, yz], [xz, yz, zz - value]];
+    let candidates = [cross(rows[0], rows[1]), cross(rows[0], rows[2]), cross(rows[1], rows[2])];
+    let longest = candidates.into_iter().max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
+    unit(longest.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn eigenpairs_solve_the_matrix(m in prop::array::uniform6(-10.0f64..10.0)) {
+            let [xx, yy, zz, xy, xz, yz] = m;
+            let values = eigenvalues(m);
+            prop_assert!(values[0] <= values[1] + 1e-9 && values[1] <= values[2] + 1e-9);
+            for (k, other) in [(0, 1), (2, 1)] {
+                prop_assume!((values[k] - values[other]).abs() > 1e-3);
+                let v = eigenvector(m, values[k]);
+                let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+                for i in 0..3 {
+                    prop_assert!((dot(rows[i], v) - values[k] * v[i]).abs() < 1e-6);
+                }
+            }
+        }
     }
 }

@@ -202,7 +202,7 @@ fn zip(polylines: &Polylines, execution: &mut Execution, from: f64) -> Result<Me
 }
 
 /// Voxels of the parts that are worked on at once; a larger component is a batch of its own.
-const BATCH_VOXELS: usize = 1_000_000;
+const BATCH_VOXELS: usize = 300_000;
 
 /// Scans the volume and hands its parts with their ridge fields to `work`, in batches of whole
 /// components.

@@ -8,20 +8,20 @@
 //! sheet of the local thickness would give in its middle, erf(h / (√2 σ)). It is 1 inside a sheet
 //! and ½ on its rim, which is how the next stage finds rims and holes at subvoxel position.
 
-use crate::bricks::{Batch, BRICK};
+use crate::bricks::{Batch, BRICK, NEAR};
 use crate::components::Part;
 use crate::distance::distance;
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
-use crate::separable::{local_maximum, smooth, Kernel};
+use crate::separable::{local_maximum, smooth, Kernel, Wanted};
 use crate::sheet::{sheets, Sheet};
 
 /// The largest σ in work units: a label for which it would be larger is not a thin slab.
 pub(crate) const LARGEST_SCALE: f64 = 8.0;
 
-/// Voxels around a part that interpolation near its faces reaches.
-const LEAST_MARGIN: usize = 3;
+/// The smallest σ in work units: below it the grid shows through.
+const SMALLEST_SCALE: f64 = 0.8;
 
 /// The fields of a batch, over its bricks.
 pub(crate) struct RidgeField {
@@ -48,7 +48,7 @@ pub(crate) fn ridge_field<'a>(
     let scales = scales(&bare, &bare_distance);
     let reach = |part: usize| 2.0 * scales[part] + 1.0;
     let batch = Batch::new(parts, dimensions, |part, axis| {
-        ((reach(part) / h[axis]).round() as usize).max(LEAST_MARGIN)
+        ((reach(part) / h[axis]).round() as usize).max(NEAR)
     })?;
     let distance = transfer(&bare, &bare_distance, &batch)?;
     drop((bare, bare_distance));
@@ -57,10 +57,10 @@ pub(crate) fn ridge_field<'a>(
         .map(|part| Kernel::axes(scales[part], reach(part), h, &batch.directories[part]))
         .collect();
     let mut scratch = batch.field()?;
-    let ridge = smooth(&batch, &kernels, copy(&distance)?, &mut scratch, execution)?;
+    let ridge = smooth(&batch, &kernels, Wanted::All, copy(&distance)?, &mut scratch, execution)?;
     let mut mask = copy(&distance)?;
     mask.iter_mut().for_each(|d| *d = f32::from(*d > 0.0));
-    let mut fraction = smooth(&batch, &kernels, mask, &mut scratch, execution)?;
+    let mut fraction = smooth(&batch, &kernels, Wanted::All, mask, &mut scratch, execution)?;
     let thick = local_maximum(&batch, &kernels, copy(&distance)?, &mut scratch, execution)?;
     execution.fill(&mut fraction, BRICK, |brick, fraction| {
         let sigma = scales[batch.part_of_brick[brick] as usize];
@@ -114,7 +114,7 @@ fn scales(batch: &Batch, distance: &[f32]) -> Vec<f64> {
     for parts in batch.parts.chunk_by(|a, b| a.component == b.component) {
         let own = &largest[scales.len()..][..parts.len()];
         let most = own.iter().copied().fold(0.0, f32::max);
-        let scale = (f64::from(most) / 2.0).min(LARGEST_SCALE);
+        let scale = (f64::from(most) / 2.0).clamp(SMALLEST_SCALE, LARGEST_SCALE);
         scales.resize(scales.len() + parts.len(), scale);
     }
     scales

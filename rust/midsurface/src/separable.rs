@@ -79,28 +79,42 @@ fn weights(sigma: f64, radius: usize, room: [usize; 2]) -> Vec<f32> {
     raw.iter().enumerate().map(fit).collect()
 }
 
+/// For which bricks a filter's result is needed.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Wanted {
+    /// All; exact near the part.
+    All,
+    /// Those near the part, and what lies beyond may be taken for zero.
+    Core,
+}
+
 /// Smooths `field` with the kernels of each part. `scratch` is overwritten.
 pub(crate) fn smooth(
     batch: &Batch,
     kernels: &[[Kernel; 3]],
+    wanted: Wanted,
     mut field: Vec<f32>,
     scratch: &mut Vec<f32>,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
     for axis in [2, 1, 0] {
+        let core_only = wanted == Wanted::Core || axis == 0;
         execution.fill(scratch, BRICK, |brick, out| {
-            let part = batch.part_of_brick[brick] as usize;
-            let kernel = &kernels[part][axis];
+            out.fill(0.0);
+            if core_only && !batch.core[brick] {
+                return;
+            }
+            let kernel = &kernels[batch.part_of_brick[brick] as usize][axis];
             let (directory, place) = batch.brick(brick);
             let input = Neighbours::new(directory, place, axis, kernel.radius, &field);
-            out.fill(0.0);
-            for k in 0..EDGE {
-                let weights = kernel.at(place[axis] * EDGE + k);
-                for (offset, &weight) in weights.iter().enumerate() {
-                    if weight != 0.0 {
-                        input.add(axis, k, k + offset, weight, out);
-                    }
-                }
+            if input.bricks.iter().all(Option::is_none) {
+                return;
+            }
+            let weights: [&[f32]; EDGE] =
+                std::array::from_fn(|k| kernel.at(place[axis] * EDGE + k));
+            match axis {
+                0 => input.along_x(|row, out| convolve_row(row, &weights, out), out),
+                _ => input.across(axis, &weights, |out, v, w| *out += w * v, out),
             }
         })?;
         std::mem::swap(&mut field, scratch);
@@ -118,14 +132,20 @@ pub(crate) fn local_maximum(
 ) -> Result<Vec<f32>> {
     for axis in [2, 1, 0] {
         execution.fill(scratch, BRICK, |brick, out| {
-            let radius = kernels[batch.part_of_brick[brick] as usize][axis].radius;
-            let (directory, place) = batch.brick(brick);
-            let input = Neighbours::new(directory, place, axis, radius, &field);
             out.fill(0.0);
-            for k in 0..EDGE {
-                for offset in 0..=2 * radius {
-                    input.raise(axis, k, k + offset, out);
-                }
+            if axis == 0 && !batch.core[brick] {
+                return;
+            }
+            let kernel = &kernels[batch.part_of_brick[brick] as usize][axis];
+            let (directory, place) = batch.brick(brick);
+            let input = Neighbours::new(directory, place, axis, kernel.radius, &field);
+            if input.bricks.iter().all(Option::is_none) {
+                return;
+            }
+            let weights = [&kernel.weights[0][..]; EDGE];
+            match axis {
+                0 => input.along_x(|row, out| maximum_row(row, kernel.radius, out), out),
+                _ => input.across(axis, &weights, |out, v, _| *out = out.max(v), out),
             }
         })?;
         std::mem::swap(&mut field, scratch);
@@ -133,71 +153,102 @@ pub(crate) fn local_maximum(
     Ok(field)
 }
 
-/// The bricks in a row along one axis, as far as a filter reaches.
+/// `out[k] = weights[k] · row[k ..]`.
+fn convolve_row(row: &[f32], weights: &[&[f32]; EDGE], out: &mut [f32]) {
+    let first = weights[0];
+    // Away from the borders all eight kernels are one, and the sums run side by side.
+    if weights.iter().all(|w| std::ptr::eq(w.as_ptr(), first.as_ptr())) {
+        for (k, &w) in first.iter().enumerate() {
+            for (out, v) in out.iter_mut().zip(&row[k..k + EDGE]) {
+                *out += w * v;
+            }
+        }
+    } else {
+        for (k, out) in out.iter_mut().enumerate() {
+            *out = row[k..].iter().zip(weights[k]).map(|(v, w)| v * w).sum();
+        }
+    }
+}
+
+/// `out[k]` = the largest of `row[k ..= k + 2 · radius]`.
+fn maximum_row(row: &[f32], radius: usize, out: &mut [f32]) {
+    for k in 0..=2 * radius {
+        for (out, v) in out.iter_mut().zip(&row[k..k + EDGE]) {
+            *out = out.max(*v);
+        }
+    }
+}
+
+/// The bricks in a row along one axis, as far as a filter reaches; empty ones are left out.
 struct Neighbours<'a> {
     bricks: Vec<Option<&'a [f32]>>,
+    radius: usize,
     /// Voxels from the start of the first of `bricks` to the first voxel the filter reaches.
     lead: usize,
 }
 
 impl<'a> Neighbours<'a> {
-    fn new(directory: &Directory, place: [usize; 3], axis: usize, radius: usize, field: &'a [f32]) -> Self {
+    fn new(
+        directory: &Directory,
+        place: [usize; 3],
+        axis: usize,
+        radius: usize,
+        field: &'a [f32],
+    ) -> Self {
         let reach = radius.div_ceil(EDGE);
         let brick = |i: usize| {
             let mut at = place;
             at[axis] = (at[axis] + i).checked_sub(reach)?;
-            directory.brick(at).map(|b| &field[b * BRICK..][..BRICK])
+            let values = &field[directory.brick(at)? * BRICK..][..BRICK];
+            let empty = values.iter().fold(true, |empty, v| empty & (*v == 0.0));
+            (!empty).then_some(values)
         };
         Self {
             bricks: (0..=2 * reach).map(brick).collect(),
+            radius,
             lead: reach * EDGE - radius,
         }
     }
 
-    /// Brick and layer of the input at `position` voxels from the first one in reach.
-    fn locate(&self, position: usize) -> Option<(&'a [f32], usize)> {
-        let at = position + self.lead;
-        self.bricks[at / EDGE].map(|brick| (brick, at % EDGE))
-    }
-
-    /// Adds `weight` times the input layer at `position` to layer k of the output.
-    fn add(&self, axis: usize, k: usize, position: usize, weight: f32, out: &mut [f32]) {
-        if let Some((brick, from)) = self.locate(position) {
-            combine(axis, k, from, brick, out, |out, v| *out += weight * v);
-        }
-    }
-
-    /// Raises layer k of the output to the input layer at `position`.
-    fn raise(&self, axis: usize, k: usize, position: usize, out: &mut [f32]) {
-        if let Some((brick, from)) = self.locate(position) {
-            combine(axis, k, from, brick, out, |out, v| *out = out.max(v));
-        }
-    }
-}
-
-/// Applies `f` to layer `to` of the output and layer `from` of a brick, layers across `axis`.
-#[inline(always)]
-fn combine(axis: usize, to: usize, from: usize, brick: &[f32], out: &mut [f32], f: impl Fn(&mut f32, f32)) {
-    match axis {
-        2 => {
-            let input = &brick[from * LAYER..][..LAYER];
-            for (out, v) in out[to * LAYER..][..LAYER].iter_mut().zip(input) {
-                f(out, *v);
-            }
-        }
-        1 => {
-            for z in 0..EDGE {
-                let input = &brick[z * LAYER + from * EDGE..][..EDGE];
-                let out = &mut out[z * LAYER + to * EDGE..][..EDGE];
-                for (out, v) in out.iter_mut().zip(input) {
-                    f(out, *v);
+    /// Applies `f(out, input, weight)` for every layer of the output across `axis`, which is not x,
+    /// and every layer of the input in its reach.
+    #[inline(always)]
+    fn across(
+        &self,
+        axis: usize,
+        weights: &[&[f32]; EDGE],
+        f: impl Fn(&mut f32, f32, f32),
+        out: &mut [f32],
+    ) {
+        // Along z a layer is 64 values in a piece; along y it is 8 in each of 8 slices.
+        let (size, pieces) = if axis == 2 { (LAYER, 1) } else { (EDGE, EDGE) };
+        for to in 0..EDGE {
+            for (offset, &weight) in weights[to].iter().enumerate() {
+                let at = to + offset + self.lead;
+                let Some(brick) = self.bricks[at / EDGE] else {
+                    continue;
+                };
+                for piece in 0..pieces {
+                    let input = &brick[piece * LAYER + at % EDGE * size..][..size];
+                    let out = &mut out[piece * LAYER + to * size..][..size];
+                    for (out, v) in out.iter_mut().zip(input) {
+                        f(out, *v, weight);
+                    }
                 }
             }
         }
-        _ => {
-            for row in 0..LAYER {
-                f(&mut out[row * EDGE + to], brick[row * EDGE + from]);
+    }
+
+    /// Applies `f(row with the filter's radius on both sides, output row)` to every row along x.
+    fn along_x(&self, f: impl Fn(&[f32], &mut [f32]), out: &mut [f32]) {
+        let mut row = vec![0.0; self.bricks.len() * EDGE];
+        for (i, out) in out.chunks_exact_mut(EDGE).enumerate() {
+            for (brick, row) in self.bricks.iter().zip(row.chunks_exact_mut(EDGE)) {
+                if let Some(brick) = brick {
+                    row.copy_from_slice(&brick[i * EDGE..][..EDGE]);
+                }
             }
+            f(&row[self.lead..][..EDGE + 2 * self.radius], out);
         }
     }
 }

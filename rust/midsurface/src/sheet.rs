@@ -10,11 +10,11 @@
 //! it is near every rim, does not pull the crest aside.
 
 use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
-use crate::eigen::{eigen, Symmetric};
+use crate::eigen::{eigenvalues, eigenvector, Symmetric};
 use crate::error::{filled, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, Vec3};
-use crate::separable::{smooth, Kernel};
+use crate::separable::{smooth, Kernel, Wanted};
 
 /// What a voxel knows of its sheet; an unknown one has a zero normal.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -40,6 +40,9 @@ pub(crate) fn sheets(
 ) -> Result<Vec<Sheet>> {
     let mut sources: Vec<[f32; 3]> = filled(ridge.len(), [0.0; 3])?;
     execution.fill(&mut sources, BRICK, |brick, out| {
+        if !batch.core[brick] {
+            return;
+        }
         let block = Block::gather(batch, brick, ridge);
         for (i, out) in out.iter_mut().enumerate() {
             let d = f64::from(distance[brick * BRICK + i]);
@@ -53,29 +56,43 @@ pub(crate) fn sheets(
         .zip(&batch.directories)
         .map(|(sigma, directory)| {
             let rho = (1.4 * sigma).clamp(1.2, 4.0);
-            Kernel::axes(rho, 2.0 * rho, h, directory)
+            Kernel::axes(rho, 1.7 * rho, h, directory)
         })
         .collect();
-    let mut tensor = Vec::with_capacity(6);
-    for (a, b) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+    // Eigenvectors do not change when a multiple of the identity is taken off: e_z² of it, and
+    // five fields are left of six.
+    let entries: [fn(&[f32; 3]) -> f32; 5] = [
+        |e| e[0] * e[0] - e[2] * e[2],
+        |e| e[1] * e[1] - e[2] * e[2],
+        |e| e[0] * e[1],
+        |e| e[0] * e[2],
+        |e| e[1] * e[2],
+    ];
+    let mut tensor = Vec::with_capacity(entries.len());
+    for entry in entries {
         let mut product = batch.field()?;
         execution.fill(&mut product, BRICK, |brick, out| {
             for (out, e) in out.iter_mut().zip(&sources[brick * BRICK..]) {
-                *out = e[a] * e[b];
+                *out = entry(e);
             }
         })?;
-        tensor.push(smooth(batch, &kernels, product, scratch, execution)?);
+        tensor.push(smooth(batch, &kernels, Wanted::Core, product, scratch, execution)?);
     }
     drop(sources);
     let mut sheets = filled(ridge.len(), Sheet::default())?;
     execution.fill(&mut sheets, BRICK, |brick, out| {
+        if !batch.core[brick] {
+            return;
+        }
         let block = Block::gather(batch, brick, ridge);
         let near = Block::gather(batch, brick, distance);
         let sigma = scale[batch.part_of_brick[brick] as usize];
         for (i, out) in out.iter_mut().enumerate() {
             if near.any_near(i) {
                 let entry = brick * BRICK + i;
-                let tensor = std::array::from_fn(|k| tensor[k][entry].into());
+                let [xx, yy, xy, xz, yz] =
+                    std::array::from_fn(|k| f64::from(tensor[k][entry]));
+                let tensor = [xx, yy, 0.0, xy, xz, yz];
                 *out = sheet(tensor, block.derivatives(i, h), sigma);
             }
         }
@@ -85,17 +102,18 @@ pub(crate) fn sheets(
 
 /// The eigenvector of the most negative curvature, times the square root of its weight.
 fn source(hessian: Symmetric, distance: f64) -> [f32; 3] {
-    let [(first, e), (second, _), _] = eigen(hessian);
+    let [first, second, _] = eigenvalues(hessian);
     if first >= 0.0 {
         return [0.0; 3];
     }
+    let e = eigenvector(hessian, first);
     let clear = ((first - second.min(0.0)) / first).clamp(0.0, 1.0);
     let weight = clear.sqrt() * distance * distance;
     e.map(|v| (v * weight) as f32)
 }
 
 fn sheet(tensor: Symmetric, (gradient, hessian): (Vec3, Symmetric), sigma: f64) -> Sheet {
-    let [.., (largest, n)] = eigen(tensor);
+    let n = eigenvector(tensor, eigenvalues(tensor)[2]);
     let [xx, yy, zz, xy, xz, yz] = hessian;
     let bent = [
         xx * n[0] + xy * n[1] + xz * n[2],
@@ -104,7 +122,7 @@ fn sheet(tensor: Symmetric, (gradient, hessian): (Vec3, Symmetric), sigma: f64) 
     ];
     let curvature = dot(n, bent);
     let offset = -dot(gradient, n) / curvature;
-    let known = largest > 0.0 && curvature < 0.0 && offset.abs() <= TRUSTED * sigma + 0.5;
+    let known = curvature < 0.0 && offset.abs() <= TRUSTED * sigma + 0.5;
     if known {
         Sheet {
             normal: n.map(|v| v as f32),

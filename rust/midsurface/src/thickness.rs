@@ -25,19 +25,27 @@ enum Reach {
 /// Follows a ray until the label ends.
 fn face(distance: &Sampler, from: Vec3, direction: Vec3) -> Reach {
     let most = (2.0 * crate::distance::LARGEST / STEP) as usize;
-    let mut before = labelled(distance, from).unwrap_or(0.0);
-    for k in 1..most {
-        let t = STEP * k as f64;
+    let (mut t, mut before) = (0.0, labelled(distance, from).unwrap_or(0.0));
+    for _ in 0..most {
+        // Deep in the label no face is near: the ray may jump.
+        t += (depth(distance, along(from, t, direction)) - 2.0).max(STEP);
         let Some(now) = labelled(distance, along(from, t, direction)) else {
-            return Reach::Border(t - STEP);
+            return Reach::Border(t);
         };
         if now < 0.5 {
             let crossing = if before > 0.5 { (before - 0.5) / (before - now) } else { 0.0 };
-            return Reach::Face(STEP * ((k - 1) as f64 + crossing));
+            return Reach::Face(t - STEP * (1.0 - crossing));
         }
         before = now;
     }
-    Reach::Face(STEP * most as f64)
+    Reach::Face(t)
+}
+
+/// Distance to the outside at the voxel nearest to a point, 0 outside the label.
+fn depth(distance: &Sampler, p: Vec3) -> f64 {
+    let voxel = std::array::from_fn(|a| (p[a] / distance.h[a]).round() as isize);
+    let entry = distance.directory.entry_at(voxel);
+    entry.map_or(0.0, |entry| distance.field[entry].into())
 }
 
 /// The label's mask at a point, linear between voxels; `None` outside the volume.
