@@ -32,4 +32,5 @@ set_target_properties(midsurface_capi PROPERTIES
 target_link_libraries(midsurface_capi INTERFACE
   gcc_s util rt Threads::Threads m ${CMAKE_DL_LIBS})
 # Rust's own symbols stay inside the library that links the core: two copies in one process clash.
-target_link_options(midsurface_capi INTERFACE "LINKER:--exclude-libs,libmidsurface_capi.a")
+# Among the libraries, not the options, since those end at a private link to a static library.
+target_link_libraries(midsurface_capi INTERFACE "-Wl,--exclude-libs,libmidsurface_capi.a")
