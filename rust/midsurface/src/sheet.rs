@@ -6,7 +6,8 @@
 //! the most negative curvature are smoothed as tensors, T = G_ρ * (w e eᵀ), which has no sign to
 //! average away; n is T's principal eigenvector. The weight w = c D⁴, with c how clearly e stands
 //! out, lets the middle of the sheet speak for its rims. The offset to the crest is the Newton step
-//! −(g · n) / (nᵀ H n). Since only the component along n counts, a slope of f within the sheet, as
+//! for log f, −(g · n) f / (f nᵀ H n − (g · n)²), which is exact at any distance where the profile of
+//! f across the sheet is a Gaussian, as it is for thin sheets. Since only the component along n counts, a slope of f within the sheet, as
 //! it is near every rim, does not pull the crest aside.
 
 use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
@@ -93,7 +94,7 @@ pub(crate) fn sheets(
                 let [xx, yy, xy, xz, yz] =
                     std::array::from_fn(|k| f64::from(tensor[k][entry]));
                 let tensor = [xx, yy, 0.0, xy, xz, yz];
-                *out = sheet(tensor, block.derivatives(i, h), sigma);
+                *out = sheet(tensor, block.value(i), block.derivatives(i, h), sigma);
             }
         }
     })?;
@@ -112,7 +113,7 @@ fn source(hessian: Symmetric, distance: f64) -> [f32; 3] {
     e.map(|v| (v * weight) as f32)
 }
 
-fn sheet(tensor: Symmetric, (gradient, hessian): (Vec3, Symmetric), sigma: f64) -> Sheet {
+fn sheet(tensor: Symmetric, value: f64, (gradient, hessian): (Vec3, Symmetric), sigma: f64) -> Sheet {
     let n = eigenvector(tensor, eigenvalues(tensor)[2]);
     let [xx, yy, zz, xy, xz, yz] = hessian;
     let bent = [
@@ -120,9 +121,10 @@ fn sheet(tensor: Symmetric, (gradient, hessian): (Vec3, Symmetric), sigma: f64) 
         xy * n[0] + yy * n[1] + yz * n[2],
         xz * n[0] + yz * n[1] + zz * n[2],
     ];
-    let curvature = dot(n, bent);
-    let offset = -dot(gradient, n) / curvature;
-    let known = curvature < 0.0 && offset.abs() <= TRUSTED * sigma + 0.5;
+    let slope = dot(gradient, n);
+    let curvature = value * dot(n, bent) - slope * slope;
+    let offset = -slope * value / curvature;
+    let known = value > 0.0 && curvature < 0.0 && offset.abs() <= TRUSTED * sigma + 0.5;
     if known {
         Sheet {
             normal: n.map(|v| v as f32),
@@ -186,6 +188,11 @@ impl Block {
     /// Position of voxel i of the brick.
     fn position(i: usize) -> usize {
         ((i / LAYER + 1) * SIDE + i / EDGE % EDGE + 1) * SIDE + i % EDGE + 1
+    }
+
+    /// The field at voxel i of the brick.
+    fn value(&self, i: usize) -> f64 {
+        self.values[Self::position(i)].into()
     }
 
     /// Whether voxel i or one of its 26 neighbours is not zero.

@@ -157,7 +157,10 @@ fn follow(
             break;
         }
         let pixel = slice.pixel(q);
-        if !slice.near(pixel, component) || (i > LAG && slice.has(pixel, LINE)) {
+        // Back at its own start a line goes on until it closes.
+        let home = (q[0] - start[0]).hypot(q[1] - start[1]) < 3.0 * step;
+        let meets = i > LAG && !home && slice.has(pixel, LINE);
+        if meets || !slice.near(pixel, component) {
             break;
         }
         let moved = [q[0] - p[0], q[1] - p[1]];
