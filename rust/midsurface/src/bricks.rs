@@ -18,8 +18,10 @@ pub(crate) const LAYER: usize = EDGE * EDGE;
 /// Voxels in a brick.
 pub(crate) const BRICK: usize = EDGE * LAYER;
 
-/// How many voxels around a part interpolation near its faces reaches.
-pub(crate) const NEAR: usize = 3;
+/// Voxels around a part for which fields are kept: what interpolation near its faces reaches. It is
+/// also as far as filters need: a filter's radius is the sheet's half thickness and a voxel, so that
+/// midway through the sheet nothing beyond is seen.
+const MARGIN: usize = 3;
 
 const ABSENT: u32 = u32::MAX;
 
@@ -41,12 +43,11 @@ pub(crate) struct Directory {
 }
 
 impl Directory {
-    /// The bricks that `part` and a margin of so many voxels along each axis touch; the first one
-    /// gets index `first`.
-    pub fn new(part: &Part, dimensions: [usize; 3], margin: [usize; 3], first: usize) -> Result<Self> {
+    /// The bricks that `part` and its margin touch; the first one gets index `first`.
+    pub fn new(part: &Part, dimensions: [usize; 3], first: usize) -> Result<Self> {
         let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
         for run in &part.runs {
-            for (axis, (from, to)) in brick_range(run, margin, dimensions).into_iter().enumerate() {
+            for (axis, (from, to)) in brick_range(run, dimensions).into_iter().enumerate() {
                 low[axis] = low[axis].min(from);
                 high[axis] = high[axis].max(to);
             }
@@ -61,7 +62,7 @@ impl Directory {
             first,
         };
         for run in &part.runs {
-            let [x, y, z] = brick_range(run, margin, dimensions);
+            let [x, y, z] = brick_range(run, dimensions);
             for bz in z.0..=z.1 {
                 for by in y.0..=y.1 {
                     let row = directory.cell([x.0, by, bz]);
@@ -71,16 +72,6 @@ impl Directory {
         }
         directory.number_bricks()?;
         Ok(directory)
-    }
-
-    /// Calls `f` with the bricks that a run and a margin around it touch.
-    pub fn for_each_brick(&self, run: &Run, margin: [usize; 3], mut f: impl FnMut(usize)) {
-        let [x, y, z] = brick_range(run, margin, self.dimensions);
-        for bz in z.0..=z.1 {
-            for by in y.0..=y.1 {
-                (x.0..=x.1).filter_map(|bx| self.brick([bx, by, bz])).for_each(&mut f);
-            }
-        }
     }
 
     fn number_bricks(&mut self) -> Result<()> {
@@ -137,13 +128,13 @@ impl Directory {
     }
 }
 
-/// First and last brick along each axis of a run with a margin, within the volume.
-fn brick_range(run: &Run, margin: [usize; 3], dimensions: [usize; 3]) -> [(usize, usize); 3] {
+/// First and last brick along each axis of a run with its margin, within the volume.
+fn brick_range(run: &Run, dimensions: [usize; 3]) -> [(usize, usize); 3] {
     let (y, z) = (run.y as usize, run.z as usize);
     let voxels = [(run.start as usize, run.end as usize - 1), (y, y), (z, z)];
     std::array::from_fn(|a| {
-        let last = (voxels[a].1 + margin[a]).min(dimensions[a] - 1);
-        (voxels[a].0.saturating_sub(margin[a]) / EDGE, last / EDGE)
+        let last = (voxels[a].1 + MARGIN).min(dimensions[a] - 1);
+        (voxels[a].0.saturating_sub(MARGIN) / EDGE, last / EDGE)
     })
 }
 
@@ -153,23 +144,15 @@ pub(crate) struct Batch<'a> {
     pub directories: Vec<Directory>,
     /// Part of each brick, as an index into `parts`.
     pub part_of_brick: Vec<u32>,
-    /// Whether a brick is within [`NEAR`] voxels of its part; the others only carry what a filter
-    /// passes on between its axes.
-    pub core: Vec<bool>,
 }
 
 impl<'a> Batch<'a> {
-    /// Bricks for `parts`, with `margin(part, axis)` voxels around each.
-    pub fn new(
-        parts: &'a [Part],
-        dimensions: [usize; 3],
-        margin: impl Fn(usize, usize) -> usize,
-    ) -> Result<Self> {
+    /// The bricks of `parts`.
+    pub fn new(parts: &'a [Part], dimensions: [usize; 3]) -> Result<Self> {
         let mut directories = reserved(parts.len())?;
         let mut first = 0;
-        for (i, part) in parts.iter().enumerate() {
-            let margin = std::array::from_fn(|axis| margin(i, axis));
-            let directory = Directory::new(part, dimensions, margin, first)?;
+        for part in parts {
+            let directory = Directory::new(part, dimensions, first)?;
             first += directory.places.len();
             directories.push(directory);
         }
@@ -177,17 +160,10 @@ impl<'a> Batch<'a> {
         for (part, directory) in directories.iter().enumerate() {
             part_of_brick.resize(directory.first + directory.places.len(), part as u32);
         }
-        let mut core = filled(first, false)?;
-        for (part, directory) in parts.iter().zip(&directories) {
-            for run in &part.runs {
-                directory.for_each_brick(run, [NEAR; 3], |brick| core[brick] = true);
-            }
-        }
         Ok(Self {
             parts,
             directories,
             part_of_brick,
-            core,
         })
     }
 

@@ -70,13 +70,17 @@ pub(crate) fn parts(mut runs: Vec<Run>, execution: &mut Execution) -> Result<(Ve
 fn parts_of_label(runs: &[Run], components: &mut u32, parts: &mut Vec<Part>) -> usize {
     let mut whole = DisjointSets::new(runs.len());
     let mut faces = DisjointSets::new(runs.len());
+    let mut corners = Vec::new();
     for_each_touch(runs, |a, b, share_a_face| {
         whole.join(a, b);
         if share_a_face {
             faces.join(a, b);
+        } else {
+            corners.push((a, b));
         }
     });
-    join_thin(runs, &mut faces);
+    corners.retain(|&(a, b)| faces.find(a) != faces.find(b));
+    join_thin(runs, &corners, &mut faces);
 
     let (order, specks) = components_by_size(runs, &mut whole);
     let mut number = vec![u32::MAX; runs.len()];
@@ -122,29 +126,30 @@ fn components_by_size(runs: &[Run], sets: &mut DisjointSets) -> (Vec<usize>, usi
     (roots, specks)
 }
 
-/// Joins parts that touch at edges or corners where both are a single voxel thick.
-fn join_thin(runs: &[Run], faces: &mut DisjointSets) {
-    let mut thin = vec![0usize; runs.len()];
-    let mut size = vec![0usize; runs.len()];
+/// Joins parts that touch at edges or corners, `corners`, where both are a single voxel thick.
+fn join_thin(runs: &[Run], corners: &[(usize, usize)], faces: &mut DisjointSets) {
+    // Only the parts that do touch are looked at: thin voxels less thick ones, 0 for the others.
+    let mut touching = vec![false; runs.len()];
+    for &(a, b) in corners {
+        touching[faces.find(a)] = true;
+        touching[faces.find(b)] = true;
+    }
     let row_of = RowIndex::new(runs);
+    let mut thin = vec![0i64; runs.len()];
     for (i, run) in runs.iter().enumerate() {
         let root = faces.find(i);
-        size[root] += run.length();
-        thin[root] += (run.start..run.end)
-            .filter(|&x| run.length() == 1 || row_of.alone(runs, run, x))
-            .count();
+        if touching[root] {
+            let is_thin = |x: &u32| run.length() == 1 || row_of.alone(runs, run, *x);
+            let count = (run.start..run.end).filter(is_thin).count() as i64;
+            thin[root] += 2 * count - run.length() as i64;
+        }
     }
-    let is_thin: Vec<bool> = (0..runs.len())
-        .map(|i| {
-            let root = faces.find(i);
-            2 * thin[root] >= size[root]
-        })
-        .collect();
-    for_each_touch(runs, |a, b, _| {
+    let is_thin: Vec<bool> = (0..runs.len()).map(|i| thin[faces.find(i)] >= 0).collect();
+    for &(a, b) in corners {
         if is_thin[a] && is_thin[b] {
             faces.join(a, b);
         }
-    });
+    }
 }
 
 /// Finds the runs of a row.

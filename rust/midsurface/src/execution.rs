@@ -42,6 +42,8 @@ pub(crate) struct Execution<'a> {
     stage: &'static str,
     from: f64,
     to: f64,
+    passes: usize,
+    passes_done: usize,
 }
 
 impl<'a> Execution<'a> {
@@ -58,18 +60,23 @@ impl<'a> Execution<'a> {
             stage: "",
             from: 0.0,
             to: 0.0,
+            passes: 1,
+            passes_done: 0,
         })
     }
 
-    /// Announces the next stage, which takes the run's progress from `from` to `to`.
-    pub fn stage(&mut self, stage: &'static str, from: f64, to: f64) -> Result<()> {
+    /// Announces the next stage, which takes the run's progress from `from` to `to` in so many
+    /// passes over the data.
+    pub fn stage(&mut self, stage: &'static str, from: f64, to: f64, passes: usize) -> Result<()> {
         (self.stage, self.from, self.to) = (stage, from, to);
+        (self.passes, self.passes_done) = (passes, 0);
         self.report(0.0)
     }
 
-    /// Tells the observer how much of the stage is done.
+    /// Tells the observer how much of the stage's present pass is done.
     pub fn report(&mut self, share: f64) -> Result<()> {
-        let fraction = self.from + (self.to - self.from) * share;
+        let passes = (self.passes_done as f64 + share) / self.passes as f64;
+        let fraction = self.from + (self.to - self.from) * passes.min(1.0);
         if self.observer.progress(fraction.clamp(0.0, 1.0), self.stage) {
             Ok(())
         } else {
@@ -82,22 +89,7 @@ impl<'a> Execution<'a> {
         self.observer.warning(message);
     }
 
-    /// `f` of every item, in the items' order.
-    pub fn map<T: Sync, R: Send>(
-        &mut self,
-        items: &[T],
-        f: impl Fn(&T) -> R + Sync,
-    ) -> Result<Vec<R>> {
-        let mut results = crate::error::reserved(items.len())?;
-        self.batches(items.len(), |pool, range| {
-            let batch: Vec<R> = pool.install(|| items[range].par_iter().map(&f).collect());
-            results.extend(batch);
-            Ok(())
-        })?;
-        Ok(results)
-    }
-
-    /// As [`Self::map`], with `keep` taking the results of each batch on the calling thread.
+    /// Hands `f` of every item, in the items' order, to `keep` on the calling thread.
     pub fn stream<T: Sync, R: Send>(
         &mut self,
         items: &[T],
@@ -152,6 +144,7 @@ impl<'a> Execution<'a> {
             start = end;
             self.report(end as f64 / count as f64)?;
         }
+        self.passes_done += 1;
         Ok(())
     }
 }

@@ -106,7 +106,7 @@ pub fn find_labels(
     observer: &mut dyn Observer,
 ) -> Result<Vec<i64>> {
     let mut execution = Execution::new(options.threads, observer)?;
-    execution.stage("Finding labels", 0.0, 1.0)?;
+    execution.stage("Finding labels", 0.0, 1.0, 1)?;
     let scan = runs::scan(volume, &mut execution, |_| false)?;
     Ok(scan.labels.into_iter().collect())
 }
@@ -125,7 +125,7 @@ pub fn ridge_field(
 ) -> Result<()> {
     let mut execution = Execution::new(options.threads, observer)?;
     let unit = volume.grid.unit() as f32;
-    for_each_batch(volume, options, &mut execution, 1.0, |batch, field, _| {
+    for_each_batch(volume, options, &mut execution, 1.0, "Writing the fields", |batch, field, _| {
         for (brick, place) in batch.places() {
             for (entry, [x, y, z]) in bricks::voxels(brick, place, volume.grid.dimensions) {
                 // Margins of neighbouring parts overlap: the stronger field wins.
@@ -173,7 +173,7 @@ fn trace_polylines(
 ) -> Result<Polylines> {
     let mut polylines = Polylines::default();
     let mut disks = 0;
-    for_each_batch(volume, options, execution, until, |batch, field, execution| {
+    for_each_batch(volume, options, execution, until, "Tracing mid-polylines", |batch, field, execution| {
         disks += polylines::polylines(batch, field, &volume.grid, &mut polylines, execution)?;
         Ok(())
     })?;
@@ -187,9 +187,9 @@ fn trace_polylines(
 }
 
 fn zip(polylines: &Polylines, execution: &mut Execution, from: f64) -> Result<Mesh> {
-    execution.stage("Zipping polylines", from, from + (1.0 - from) * 0.6)?;
+    execution.stage("Zipping polylines", from, from + (1.0 - from) * 0.6, 1)?;
     let triangles = zipper::zip(polylines, execution)?;
-    execution.stage("Making the mesh", from + (1.0 - from) * 0.6, 1.0)?;
+    execution.stage("Making the mesh", from + (1.0 - from) * 0.6, 1.0, 1)?;
     let mesh = Mesh::assemble(polylines, triangles)?;
     if mesh.triangles.is_empty() && !polylines.lines.is_empty() {
         execution.warning(
@@ -211,9 +211,10 @@ fn for_each_batch(
     options: &Options,
     execution: &mut Execution,
     until: f64,
+    stage: &'static str,
     mut work: impl FnMut(&Batch, &ridge::RidgeField, &mut Execution) -> Result<()>,
 ) -> Result<()> {
-    execution.stage("Reading labels", 0.0, 0.15 * until)?;
+    execution.stage("Reading labels", 0.0, 0.15 * until, 2)?;
     let all_parts = read_parts(volume, options, execution)?;
     let total: usize = all_parts.iter().map(Part::voxels).sum();
     let h = volume.grid.work_spacing();
@@ -223,9 +224,9 @@ fn for_each_batch(
         let voxels: usize = parts.iter().map(Part::voxels).sum();
         let (from, to) = (share(done), share(done + voxels));
         let middle = 0.5 * (from + to);
-        execution.stage("Computing the ridge field", from, middle)?;
+        execution.stage("Computing the ridge field", from, middle, ridge::PASSES)?;
         let (batch, field) = ridge::ridge_field(parts, volume.grid.dimensions, h, execution)?;
-        execution.stage("Tracing mid-polylines", middle, to)?;
+        execution.stage(stage, middle, to, 1)?;
         work(&batch, &field, execution)?;
         done += voxels;
     }
@@ -265,8 +266,9 @@ fn read_parts(volume: &Volume, options: &Options, execution: &mut Execution) -> 
         ));
     }
     let volume_size = volume.grid.voxel_count()?;
+    let found = parts.len();
     parts.retain(|part| part.voxels() < volume_size);
-    if parts.is_empty() && !scan.labels.is_empty() && specks == 0 {
+    if parts.len() < found {
         execution.warning(
             "one label fills the whole volume: it has no faces, and so no mid-surface",
         );

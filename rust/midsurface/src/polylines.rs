@@ -182,11 +182,10 @@ fn trace_region(
     });
     match &line {
         Some(line) => cover_line(slice, line, component),
-        None => {
-            slice.cover(start, 1.5 * unit, component);
-            slice.set(peak.map(|v| v as isize), COVERED);
-        }
+        None => slice.cover(start, 1.5 * unit, component),
     }
+    // Whatever the line covers, the region shrinks, so that regions come to an end.
+    slice.set(peak.map(|v| v as isize), COVERED);
     line.and_then(|line| resample(slice, &line, SPACING * unit))
 }
 
@@ -223,7 +222,8 @@ fn cover_line(slice: &mut Slice, line: &Trace, component: u32) {
     let widths: Vec<f64> = (0..line.points.len())
         .map(|i| half_width(slice, line.points[i], tangent(line, i), component))
         .collect();
-    for (i, &p) in line.points.iter().enumerate() {
+    // A trace's points are 0.7 apart, so that every other one is near enough to all pixels.
+    for (i, &p) in line.points.iter().enumerate().step_by(2) {
         let mut near = widths[i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(widths.len())].to_vec();
         near.sort_by(f64::total_cmp);
         let typical = near[near.len() / 2];

@@ -8,20 +8,23 @@
 //! sheet of the local thickness would give in its middle, erf(h / (√2 σ)). It is 1 inside a sheet
 //! and ½ on its rim, which is how the next stage finds rims and holes at subvoxel position.
 
-use crate::bricks::{Batch, BRICK, NEAR};
+use crate::bricks::{Batch, BRICK};
 use crate::components::Part;
 use crate::distance::distance;
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
-use crate::separable::{local_maximum, smooth, Kernel, Wanted};
-use crate::sheet::{sheets, Sheet};
+use crate::separable::{local_maximum, smooth, Kernel};
+use crate::sheet::{self, sheets, Sheet};
 
 /// The largest σ in work units: a label for which it would be larger is not a thin slab.
 pub(crate) const LARGEST_SCALE: f64 = 8.0;
 
 /// The smallest σ in work units: below it the grid shows through.
 const SMALLEST_SCALE: f64 = 0.8;
+
+/// Passes over all bricks that [`ridge_field`] makes, for its progress.
+pub(crate) const PASSES: usize = 13 + sheet::PASSES;
 
 /// The fields of a batch, over its bricks.
 pub(crate) struct RidgeField {
@@ -43,24 +46,18 @@ pub(crate) fn ridge_field<'a>(
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<(Batch<'a>, RidgeField)> {
-    let bare = Batch::new(parts, dimensions, |_, _| 0)?;
-    let bare_distance = distance(&bare, h, execution)?;
-    let scales = scales(&bare, &bare_distance);
+    let batch = Batch::new(parts, dimensions)?;
+    let distance = distance(&batch, h, execution)?;
+    let scales = scales(&batch, &distance);
     let reach = |part: usize| 2.0 * scales[part] + 1.0;
-    let batch = Batch::new(parts, dimensions, |part, axis| {
-        ((reach(part) / h[axis]).round() as usize).max(NEAR)
-    })?;
-    let distance = transfer(&bare, &bare_distance, &batch)?;
-    drop((bare, bare_distance));
-
     let kernels: Vec<[Kernel; 3]> = (0..parts.len())
         .map(|part| Kernel::axes(scales[part], reach(part), h, &batch.directories[part]))
         .collect();
     let mut scratch = batch.field()?;
-    let ridge = smooth(&batch, &kernels, Wanted::All, copy(&distance)?, &mut scratch, execution)?;
+    let ridge = smooth(&batch, &kernels, copy(&distance)?, &mut scratch, execution)?;
     let mut mask = copy(&distance)?;
     mask.iter_mut().for_each(|d| *d = f32::from(*d > 0.0));
-    let mut fraction = smooth(&batch, &kernels, Wanted::All, mask, &mut scratch, execution)?;
+    let mut fraction = smooth(&batch, &kernels, mask, &mut scratch, execution)?;
     let thick = local_maximum(&batch, &kernels, copy(&distance)?, &mut scratch, execution)?;
     execution.fill(&mut fraction, BRICK, |brick, fraction| {
         let sigma = scales[batch.part_of_brick[brick] as usize];
@@ -83,20 +80,6 @@ fn copy(field: &[f32]) -> Result<Vec<f32>> {
     let mut copy = crate::error::reserved(field.len())?;
     copy.extend_from_slice(field);
     Ok(copy)
-}
-
-/// Copies a field from bricks without to bricks with margins.
-fn transfer(from: &Batch, field: &[f32], to: &Batch) -> Result<Vec<f32>> {
-    let mut result = to.field()?;
-    for (part, directory) in from.directories.iter().enumerate() {
-        for (i, &place) in directory.places.iter().enumerate() {
-            if let Some(brick) = to.directories[part].brick(place) {
-                result[brick * BRICK..][..BRICK]
-                    .copy_from_slice(&field[(directory.first + i) * BRICK..][..BRICK]);
-            }
-        }
-    }
-    Ok(result)
 }
 
 /// σ of each part: half the largest distance in the part's component.

@@ -1,7 +1,7 @@
 //! Separable filters over bricks: one pass an axis, touching bricks only.
 //!
-//! What lies outside the bricks counts as zero; a margin as wide as the filter's radius therefore
-//! makes a filtered field exact wherever the part has voxels.
+//! What lies outside the bricks counts as zero. Midway through a sheet, where fields are read, no
+//! filter reaches that far.
 
 use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
 use crate::error::Result;
@@ -79,31 +79,17 @@ fn weights(sigma: f64, radius: usize, room: [usize; 2]) -> Vec<f32> {
     raw.iter().enumerate().map(fit).collect()
 }
 
-/// For which bricks a filter's result is needed.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Wanted {
-    /// All; exact near the part.
-    All,
-    /// Those near the part, and what lies beyond may be taken for zero.
-    Core,
-}
-
 /// Smooths `field` with the kernels of each part. `scratch` is overwritten.
 pub(crate) fn smooth(
     batch: &Batch,
     kernels: &[[Kernel; 3]],
-    wanted: Wanted,
     mut field: Vec<f32>,
     scratch: &mut Vec<f32>,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
     for axis in [2, 1, 0] {
-        let core_only = wanted == Wanted::Core || axis == 0;
         execution.fill(scratch, BRICK, |brick, out| {
             out.fill(0.0);
-            if core_only && !batch.core[brick] {
-                return;
-            }
             let kernel = &kernels[batch.part_of_brick[brick] as usize][axis];
             let (directory, place) = batch.brick(brick);
             let input = Neighbours::new(directory, place, axis, kernel.radius, &field);
@@ -133,9 +119,6 @@ pub(crate) fn local_maximum(
     for axis in [2, 1, 0] {
         execution.fill(scratch, BRICK, |brick, out| {
             out.fill(0.0);
-            if axis == 0 && !batch.core[brick] {
-                return;
-            }
             let kernel = &kernels[batch.part_of_brick[brick] as usize][axis];
             let (directory, place) = batch.brick(brick);
             let input = Neighbours::new(directory, place, axis, kernel.radius, &field);

@@ -15,7 +15,7 @@ use crate::eigen::{eigenvalues, eigenvector, Symmetric};
 use crate::error::{filled, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, Vec3};
-use crate::separable::{smooth, Kernel, Wanted};
+use crate::separable::{smooth, Kernel};
 
 /// What a voxel knows of its sheet; an unknown one has a zero normal.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -25,6 +25,9 @@ pub(crate) struct Sheet {
     /// Distance from the voxel to the crest along the normal, work units.
     pub offset: f32,
 }
+
+/// Passes over all bricks that [`sheets`] makes, for its progress.
+pub(crate) const PASSES: usize = 22;
 
 /// An offset beyond this many σ (plus half a unit) is no longer that of a parabola.
 const TRUSTED: f64 = 1.3;
@@ -41,9 +44,6 @@ pub(crate) fn sheets(
 ) -> Result<Vec<Sheet>> {
     let mut sources: Vec<[f32; 3]> = filled(ridge.len(), [0.0; 3])?;
     execution.fill(&mut sources, BRICK, |brick, out| {
-        if !batch.core[brick] {
-            return;
-        }
         let block = Block::gather(batch, brick, ridge);
         for (i, out) in out.iter_mut().enumerate() {
             let d = f64::from(distance[brick * BRICK + i]);
@@ -77,14 +77,11 @@ pub(crate) fn sheets(
                 *out = entry(e);
             }
         })?;
-        tensor.push(smooth(batch, &kernels, Wanted::Core, product, scratch, execution)?);
+        tensor.push(smooth(batch, &kernels, product, scratch, execution)?);
     }
     drop(sources);
     let mut sheets = filled(ridge.len(), Sheet::default())?;
     execution.fill(&mut sheets, BRICK, |brick, out| {
-        if !batch.core[brick] {
-            return;
-        }
         let block = Block::gather(batch, brick, ridge);
         let near = Block::gather(batch, brick, distance);
         let sigma = scale[batch.part_of_brick[brick] as usize];
