@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::separable::{local_maximum, smooth, Kernel};
-use crate::sheet::{self, sheets, Sheet};
+use crate::sheet::{self, sheets, unshrink, Sheet};
 
 /// The largest σ in work units: a label for which it would be larger is not a thin slab.
 pub(crate) const LARGEST_SCALE: f64 = 8.0;
@@ -66,7 +66,10 @@ pub(crate) fn ridge_field<'a>(
         }
     })?;
     drop(thick);
-    let sheets = sheets(&batch, &scales, &distance, &ridge, h, &mut scratch, execution)?;
+    let mut sheets = sheets(&batch, &scales, &distance, &ridge, h, &mut scratch, execution)?;
+    drop(scratch);
+    let variance: Vec<f64> = kernels.iter().map(|kernels| kernels[0].variance(h[0])).collect();
+    unshrink(&batch, &variance, &mut sheets, h, execution)?;
     let field = RidgeField {
         distance,
         ridge,

@@ -41,6 +41,12 @@ impl Kernel {
         std::array::from_fn(|a| Self::new(sigma, reach, h[a], directory.dimensions[a]))
     }
 
+    /// Variance of the kernel in work units squared, h being the spacing it was made for.
+    pub fn variance(&self, h: f64) -> f64 {
+        let square = |(i, w): (usize, &f32)| f64::from(*w) * (i as f64 - self.radius as f64).powi(2);
+        h * h * self.weights[0].iter().enumerate().map(square).sum::<f64>()
+    }
+
     /// The weights at index `i` of the axis.
     fn at(&self, i: usize) -> &[f32] {
         let near = self.radius.min(self.count);

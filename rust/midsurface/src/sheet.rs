@@ -17,6 +17,9 @@ use crate::execution::Execution;
 use crate::grid::{dot, Vec3};
 use crate::separable::{smooth, Kernel};
 
+/// No sheet is taken to have shrunk by more, work units.
+const MOST_SHRUNK: f64 = 0.75;
+
 /// What a voxel knows of its sheet; an unknown one has a zero normal.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Sheet {
@@ -27,7 +30,7 @@ pub(crate) struct Sheet {
 }
 
 /// Passes over all bricks that [`sheets`] makes, for its progress.
-pub(crate) const PASSES: usize = 22;
+pub(crate) const PASSES: usize = 23;
 
 /// An offset beyond this many σ (plus half a unit) is no longer that of a parabola.
 const TRUSTED: f64 = 1.3;
@@ -96,6 +99,61 @@ pub(crate) fn sheets(
         }
     })?;
     Ok(sheets)
+}
+
+/// Takes back what smoothing shrank: under a Gaussian of variance σ² the crest of a curved sheet
+/// moves by ½ σ² div n against n, as the heat equation says for a function of the distance to it.
+pub(crate) fn unshrink(
+    batch: &Batch,
+    variance: &[f64],
+    sheets: &mut Vec<Sheet>,
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<()> {
+    let mut corrected = filled(sheets.len(), Sheet::default())?;
+    execution.fill(&mut corrected, BRICK, |brick, out| {
+        let (directory, place) = batch.brick(brick);
+        let half_variance = 0.5 * variance[batch.part_of_brick[brick] as usize];
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = sheets[brick * BRICK + i];
+            if out.normal != [0.0; 3] {
+                let shift = half_variance * divergence(directory, place, i, sheets, h);
+                out.offset += shift.clamp(-MOST_SHRUNK, MOST_SHRUNK) as f32;
+            }
+        }
+    })?;
+    *sheets = corrected;
+    Ok(())
+}
+
+/// div n at voxel i of the brick at `place`; differences with unknown neighbours are left out.
+fn divergence(
+    directory: &Directory,
+    place: [usize; 3],
+    i: usize,
+    sheets: &[Sheet],
+    h: Vec3,
+) -> f64 {
+    let voxel = [i % EDGE, i / EDGE % EDGE, i / LAYER].map(|v| v as isize);
+    let known = |at: [isize; 3]| {
+        let normal = sheets[neighbour(directory, place, at)?].normal.map(f64::from);
+        (normal != [0.0; 3]).then_some(normal)
+    };
+    let Some(own) = known(voxel) else {
+        return 0.0;
+    };
+    (0..3)
+        .map(|axis| {
+            let along_axis = |step: isize| {
+                let mut at = voxel;
+                at[axis] += step;
+                known(at).map(|n| (n[axis] * dot(n, own).signum(), step as f64))
+            };
+            let (low, high) = (along_axis(-1), along_axis(1));
+            let (a, b) = (low.unwrap_or((own[axis], 0.0)), high.unwrap_or((own[axis], 0.0)));
+            if a.1 == b.1 { 0.0 } else { (b.0 - a.0) / ((b.1 - a.1) * h[axis]) }
+        })
+        .sum()
 }
 
 /// The eigenvector of the most negative curvature, times the square root of its weight.

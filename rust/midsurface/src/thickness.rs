@@ -4,7 +4,7 @@ use crate::grid::{along, Vec3};
 use crate::interpolation::Sampler;
 
 /// Step along the ray, work units; the face is then found by linear interpolation.
-const STEP: f64 = 0.25;
+const STEP: f64 = 0.5;
 
 /// Thickness at a point, work units. The ray runs both ways along the sheet's normal; where one
 /// way leaves the volume, the thickness is twice the other's length.
@@ -28,7 +28,7 @@ fn face(distance: &Sampler, from: Vec3, direction: Vec3) -> Reach {
     let (mut t, mut before) = (0.0, labelled(distance, from).unwrap_or(0.0));
     for _ in 0..most {
         // Deep in the label no face is near: the ray may jump.
-        t += (depth(distance, along(from, t, direction)) - 2.0).max(STEP);
+        t += (depth(distance, along(from, t, direction)) - 1.5).max(STEP);
         let Some(now) = labelled(distance, along(from, t, direction)) else {
             return Reach::Border(t);
         };
