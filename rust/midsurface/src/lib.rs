@@ -36,6 +36,7 @@ mod manifold;
 mod mesh;
 mod polylines;
 mod quality;
+mod resample;
 mod ridge;
 mod runs;
 mod separable;

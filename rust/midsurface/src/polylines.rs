@@ -16,7 +16,8 @@ use crate::ridge::RidgeField;
 use crate::runs::Run;
 use crate::slice::{Pixel, Point, Slice, COVERED};
 use crate::thickness::thickness;
-use crate::trace::{crest, trace, Trace};
+use crate::resample::{arc_length, distance, resample};
+use crate::trace::{trace, Trace};
 
 /// Distance of neighbouring points on a line, in units of the finest spacing (the paper's √2).
 const SPACING: f64 = std::f64::consts::SQRT_2;
@@ -91,7 +92,8 @@ pub(crate) fn polylines(
         &jobs,
         |&(part, runs)| {
             let directory = &batch.directories[part];
-            trace_slice(PartField { directory, field, h }, runs)
+            let first_slice = grid.extent_start[2];
+            trace_slice(PartField { directory, field, h, first_slice }, runs)
         },
         |found: SliceLines| {
             disks += found.disks;
@@ -110,9 +112,16 @@ struct PartField<'a> {
     directory: &'a Directory,
     field: &'a RidgeField,
     h: Vec3,
+    /// Index of the volume's first slice in the image's extent.
+    first_slice: i64,
 }
 
 impl<'a> PartField<'a> {
+    /// Whether the slice has an odd index in the image's extent.
+    fn odd(&self, z: usize) -> bool {
+        (self.first_slice + z as i64) % 2 != 0
+    }
+
     fn sampler(&self, field: &'a [f32]) -> Sampler<'a> {
         Sampler {
             directory: self.directory,
@@ -186,19 +195,7 @@ fn trace_region(
     }
     // Whatever the line covers, the region shrinks, so that regions come to an end.
     slice.set(peak.map(|v| v as isize), COVERED);
-    line.and_then(|line| resample(slice, &line, SPACING * unit))
-}
-
-fn distance(a: Point, b: Point) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
-fn arc_length(line: &Trace) -> f64 {
-    let open: f64 = line.points.windows(2).map(|w| distance(w[0], w[1])).sum();
-    match (line.closed, line.points.first(), line.points.last()) {
-        (true, Some(&first), Some(&last)) => open + distance(first, last),
-        _ => open,
-    }
+    line.and_then(|line| resample(slice, line, SPACING * unit, part.odd(slice.z)))
 }
 
 /// Unit tangent at point i.
@@ -245,44 +242,6 @@ fn half_width(slice: &Slice, p: Point, tangent: Point, component: u32) -> f64 {
         step * steps.unwrap_or(most) as f64
     };
     side(1.0).max(side(-1.0))
-}
-
-/// Points at even distances near `spacing` along a line, put back onto the ridge. The ends of an
-/// open line stay. `None` where the line is shorter than half a segment.
-fn resample(slice: &Slice, line: &Trace, spacing: f64) -> Option<Trace> {
-    let length = arc_length(line);
-    let segments = (length / spacing).round() as usize;
-    let segments = segments.max(if line.closed { 3 } else { 1 });
-    if length < 0.3 * spacing {
-        return None;
-    }
-    let mut corners = line.points.clone();
-    if line.closed {
-        corners.push(line.points[0]);
-    }
-    let mut points = Vec::with_capacity(segments + 1);
-    let (mut corner, mut passed) = (0, 0.0);
-    for k in 0..=segments {
-        let target = length * k as f64 / segments as f64;
-        while corner + 2 < corners.len()
-            && passed + distance(corners[corner], corners[corner + 1]) < target
-        {
-            passed += distance(corners[corner], corners[corner + 1]);
-            corner += 1;
-        }
-        let (a, b) = (corners[corner], corners[corner + 1]);
-        let t = ((target - passed) / distance(a, b).max(1e-12)).clamp(0.0, 1.0);
-        let p = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-        let end = !line.closed && (k == 0 || k == segments);
-        points.push(if end { p } else { crest(slice, p).unwrap_or(p) });
-    }
-    if line.closed {
-        points.pop();
-    }
-    Some(Trace {
-        points,
-        closed: line.closed,
-    })
 }
 
 /// Moves a slice's lines into world coordinates and appends them.

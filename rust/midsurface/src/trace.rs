@@ -17,7 +17,7 @@ const STEP: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// The largest move across the line at once, in the same units.
 const REACH: f64 = 0.75;
 /// Where the normal's part within the slice is smaller, the sheet lies flat: no line.
-const FLAT: f64 = 0.15;
+const FLAT: f64 = 0.06;
 /// A line does not look for other lines during its first steps, nor see its own last ones.
 const LAG: usize = 6;
 
