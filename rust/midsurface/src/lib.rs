@@ -23,6 +23,7 @@
 #![forbid(unsafe_code)]
 
 mod bricks;
+mod centre;
 mod components;
 mod distance;
 mod eigen;

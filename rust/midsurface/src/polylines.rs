@@ -15,7 +15,8 @@ use crate::interpolation::Sampler;
 use crate::ridge::RidgeField;
 use crate::runs::Run;
 use crate::slice::{Pixel, Point, Slice, COVERED};
-use crate::thickness::thickness;
+use crate::centre::centre;
+use crate::thickness::Faces;
 use crate::resample::{arc_length, distance, resample};
 use crate::trace::{trace, Trace};
 
@@ -130,11 +131,11 @@ impl<'a> PartField<'a> {
         }
     }
 
-    /// Thickness of the label at a point of a slice, work units.
-    fn thickness(&self, slice: &Slice, p: Point) -> f64 {
+    /// Both faces of the label as seen from a point of a slice, where the sheet is known.
+    fn faces(&self, slice: &Slice, p: Point) -> Option<Faces> {
         let from = [p[0], p[1], slice.z as f64 * self.h[2]];
-        let distance = self.sampler(&self.field.distance);
-        slice.sheet(p).map_or(0.0, |(normal, _)| thickness(&distance, from, normal))
+        let (normal, _) = slice.sheet(p)?;
+        Some(Faces::new(&self.sampler(&self.field.distance), from, normal))
     }
 }
 
@@ -152,8 +153,7 @@ fn trace_slice(part: PartField, runs: &[Run]) -> SliceLines {
             primary &= line.is_none();
             let attempt = if line.is_some() { 0 } else { attempt + 1 };
             if let Some(line) = line {
-                let thickness = line.points.iter().map(|&p| part.thickness(&slice, p)).collect();
-                found.lines.push((line, thickness));
+                found.lines.push(finish(part, &slice, line));
             }
             if attempt < ATTEMPTS {
                 let rest = slice.uncovered(&pixels).into_iter();
@@ -164,6 +164,22 @@ fn trace_slice(part: PartField, runs: &[Run]) -> SliceLines {
         found.disks += usize::from(primary);
     }
     found
+}
+
+/// Moves a line's points to the middle between both faces, and measures the thickness there.
+fn finish(part: PartField, slice: &Slice, mut line: Trace) -> (Trace, Vec<f64>) {
+    let faces: Vec<Option<Faces>> = line.points.iter().map(|&p| part.faces(slice, p)).collect();
+    centre(slice, &mut line, &faces);
+    let known = |i: usize| faces[i].map(|faces| faces.thickness());
+    // A point at a corner may see no sheet: it takes its neighbour's thickness.
+    let nearest = |i: usize| {
+        (0..faces.len()).find_map(|k| {
+            let before = i.checked_sub(k).and_then(known);
+            before.or_else(|| (i + k < faces.len()).then(|| known(i + k)).flatten())
+        })
+    };
+    let thickness = (0..faces.len()).map(|i| nearest(i).unwrap_or(0.0)).collect();
+    (line, thickness)
 }
 
 /// The line from the peak of a region, `None` where there is none worth keeping. Covers what

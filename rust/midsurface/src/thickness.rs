@@ -1,4 +1,5 @@
-//! Local thickness: the distance between both faces of the label through a point.
+//! Both faces of the label as seen from a point of the mid-surface: how thick the label is there,
+//! and how far off its middle the point lies.
 
 use crate::grid::{along, Vec3};
 use crate::interpolation::Sampler;
@@ -6,20 +7,39 @@ use crate::interpolation::Sampler;
 /// Step along the ray, work units; the face is then found by linear interpolation.
 const STEP: f64 = 0.5;
 
-/// Thickness at a point, work units. The ray runs both ways along the sheet's normal; where one
-/// way leaves the volume, the thickness is twice the other's length.
-pub(crate) fn thickness(distance: &Sampler, from: Vec3, normal: Vec3) -> f64 {
-    match (face(distance, from, normal), face(distance, from, normal.map(|v| -v))) {
-        (Reach::Face(a), Reach::Face(b)) => a + b,
-        (Reach::Face(a), Reach::Border(_)) | (Reach::Border(_), Reach::Face(a)) => 2.0 * a,
-        (Reach::Border(a), Reach::Border(b)) => a + b,
-    }
-}
-
-/// How a ray ended.
+/// How a ray through the label ended, after which length.
+#[derive(Clone, Copy)]
 enum Reach {
     Face(f64),
     Border(f64),
+}
+
+/// Both faces of the label as seen from a point, work units.
+#[derive(Clone, Copy)]
+pub(crate) struct Faces([Reach; 2]);
+
+impl Faces {
+    /// Looks both ways along the sheet's normal.
+    pub fn new(distance: &Sampler, from: Vec3, normal: Vec3) -> Self {
+        Self([normal, normal.map(|v| -v)].map(|direction| face(distance, from, direction)))
+    }
+
+    /// Distance between the faces; twice the distance to the one face where the other lies outside
+    /// the volume.
+    pub fn thickness(&self) -> f64 {
+        match self.0 {
+            [Reach::Face(a), Reach::Face(b)] | [Reach::Border(a), Reach::Border(b)] => a + b,
+            [Reach::Face(a), Reach::Border(_)] | [Reach::Border(_), Reach::Face(a)] => 2.0 * a,
+        }
+    }
+
+    /// How far along the normal the middle is, where both faces are seen.
+    pub fn to_middle(self) -> Option<f64> {
+        match self.0 {
+            [Reach::Face(a), Reach::Face(b)] => Some(0.5 * (a - b)),
+            _ => None,
+        }
+    }
 }
 
 /// Follows a ray until the label ends.
@@ -28,13 +48,14 @@ fn face(distance: &Sampler, from: Vec3, direction: Vec3) -> Reach {
     let (mut t, mut before) = (0.0, labelled(distance, from).unwrap_or(0.0));
     for _ in 0..most {
         // Deep in the label no face is near: the ray may jump.
-        t += (depth(distance, along(from, t, direction)) - 1.5).max(STEP);
+        let step = (depth(distance, along(from, t, direction)) - 1.5).max(STEP);
+        t += step;
         let Some(now) = labelled(distance, along(from, t, direction)) else {
-            return Reach::Border(t);
+            return Reach::Border(t - step);
         };
         if now < 0.5 {
             let crossing = if before > 0.5 { (before - 0.5) / (before - now) } else { 0.0 };
-            return Reach::Face(t - STEP * (1.0 - crossing));
+            return Reach::Face(t - step * (1.0 - crossing));
         }
         before = now;
     }
