@@ -18,8 +18,11 @@ use crate::grid::{dot, length, squared_distance, sub, Vec3};
 use crate::polylines::{Polyline, Polylines};
 use crate::strip::{triangulate, Side};
 
-/// The most edges without a partner between two linked pairs, and at the end of a strip.
+/// The most edges without a partner at the end of a strip.
 const GAP: usize = 4;
+/// The most edges without a partner between two linked pairs. Where lines are displaced by more than
+/// an edge, each edge's nearest prefers the next one, all along.
+const FREE: i64 = 64;
 /// An edge without a partner may be farther away than its strip's pairs by this factor.
 const FARTHER: f64 = 1.8;
 /// Relative difference below which two lengths are the same: a change of units costs a last bit.
@@ -245,7 +248,8 @@ impl<'a> Pairing<'a> {
         dot(self.below.edges[a].direction, self.above.edges[b].direction) > 0.0
     }
 
-    /// Whether pair `q` follows pair `p` on both lines, at most [`GAP`] free edges between them.
+    /// Whether pair `q` follows pair `p` on both lines, with edges between them that have no
+    /// partner but whose nearest edges lie between the pairs, too.
     fn linked(&self, p: (usize, usize), q: (usize, usize)) -> bool {
         let same_lines = self.below.edges[p.0].line == self.below.edges[q.0].line
             && self.above.edges[p.1].line == self.above.edges[q.1].line;
@@ -255,13 +259,23 @@ impl<'a> Pairing<'a> {
         let sign = if self.same_way(p) { 1 } else { -1 };
         let below = self.below.steps(p.0, q.0);
         let above = sign * self.above.steps(p.1, q.1);
-        let most = GAP as i64 + 1;
-        (1..=most).contains(&below)
-            && (1..=most).contains(&above)
-            && (1..above).all(|k| {
-                let between = self.above.step(p.1, sign * k);
-                between.is_some_and(|b| !self.taken_above[b])
-            })
+        if !(1..=FREE).contains(&below) || !(1..=FREE).contains(&above) {
+            return false;
+        }
+        let between_above = |b: usize| {
+            self.above.edges[b].line == self.above.edges[p.1].line
+                && (-1..=above + 1).contains(&(sign * self.above.steps(p.1, b)))
+        };
+        let between_below = |a: usize| {
+            self.below.edges[a].line == self.below.edges[p.0].line
+                && (-1..=below + 1).contains(&self.below.steps(p.0, a))
+        };
+        (1..below)
+            .filter_map(|k| self.below.step(p.0, k))
+            .all(|a| between_above(self.nearest_above[a]))
+            && (1..above)
+                .filter_map(|k| self.above.step(p.1, sign * k))
+                .all(|b| !self.taken_above[b] && between_below(self.nearest_below[b]))
     }
 
     /// All chains, in the order of the edges below.
