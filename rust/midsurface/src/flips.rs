@@ -5,7 +5,7 @@
 //! leaves them and opens the smallest angle, and where the surface is flat enough not to change
 //! shape.
 
-use crate::grid::{cross, dot, sub, unit, Vec3};
+use crate::grid::{cross, dot, squared_distance, sub, unit, Vec3};
 use crate::halfedge::{ends, next, Edges, MOST_AROUND, NONE};
 
 /// Passes over all edges; later passes find next to nothing.
@@ -83,7 +83,8 @@ fn try_flip(
         + valence.excess(c, 1)
         + valence.excess(d, 1);
     let least = |p: u32| if valence.boundary[p as usize] { 2 } else { 3 };
-    if after > before || c == d || [a, b].iter().any(|&p| valence.count[p as usize] <= least(p)) {
+    let coincide = squared_distance(points[c as usize], points[d as usize]) == 0.0;
+    if after > before || coincide || [a, b].iter().any(|&p| valence.count[p as usize] <= least(p)) {
         return false;
     }
     let [a3, b3, c3, d3] = [a, b, c, d].map(|p| points[p as usize]);

@@ -43,6 +43,7 @@ mod runs;
 mod separable;
 mod sheet;
 mod slice;
+mod slices;
 mod strip;
 mod thickness;
 mod trace;
@@ -189,10 +190,11 @@ fn trace_polylines(
 }
 
 fn zip(polylines: &Polylines, execution: &mut Execution, from: f64) -> Result<Mesh> {
+    let polylines = &*polylines.without_repeats();
     execution.stage("Zipping polylines", from, from + (1.0 - from) * 0.6, 1)?;
     let triangles = zipper::zip(polylines, execution)?;
     execution.stage("Making the mesh", from + (1.0 - from) * 0.6, 1.0, 1)?;
-    let mesh = Mesh::assemble(polylines, triangles)?;
+    let mesh = Mesh::assemble(polylines, triangles, execution)?;
     if mesh.triangles.is_empty() && !polylines.lines.is_empty() {
         execution.warning(
             "there is no surface: it takes lines in two neighbouring slices, and this input has \

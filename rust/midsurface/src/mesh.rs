@@ -1,6 +1,7 @@
 //! The result: a triangle mesh, and the invariants it keeps.
 
 use crate::error::{reserved, Result};
+use crate::execution::Execution;
 use crate::flips::flip_edges;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::{Edges, NONE};
@@ -66,15 +67,22 @@ pub enum InvariantViolation {
 
 impl Mesh {
     /// Builds the mesh from the zipper's triangles.
-    pub(crate) fn assemble(polylines: &Polylines, zipped: Vec<Zipped>) -> Result<Self> {
+    pub(crate) fn assemble(
+        polylines: &Polylines,
+        zipped: Vec<Zipped>,
+        execution: &mut Execution,
+    ) -> Result<Self> {
         let mut surface = Surface {
             points: polylines.points.clone(),
             source: (0..polylines.points.len() as u32).collect(),
             triangles: zipped.iter().map(|z| z.0).collect(),
         };
         make_manifold(&mut surface);
+        execution.report(0.25)?;
         flip_edges(&surface.points, &mut surface.triangles);
+        execution.report(0.5)?;
         turn_outward(&surface.points, &mut surface.triangles);
+        execution.report(0.75)?;
         let line_of = line_of_points(polylines);
         let line = |t: &[u32; 3]| &polylines.lines[line_of[surface.source[t[0] as usize] as usize]];
         let mut mesh = Self {

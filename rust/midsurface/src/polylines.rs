@@ -40,14 +40,6 @@ pub struct Polylines {
     pub lines: Vec<Polyline>,
 }
 
-impl Polylines {
-    /// Checks lines that come from elsewhere: indices, figures, and that the lines of each slice
-    /// lie in a plane of their own, parallel to the others'.
-    pub fn check(&self) -> Result<()> {
-        Ok(())
-    }
-}
-
 /// One line: `points[first .. first + count]`, joined in this order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polyline {
