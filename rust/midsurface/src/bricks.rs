@@ -8,7 +8,7 @@
 //! Each part has bricks of its own; where two parts are close, both have a brick at the same place.
 
 use crate::components::Part;
-use crate::error::{filled, reserved, Result};
+use crate::error::{reserved, zeros, Result};
 use crate::runs::Run;
 
 /// Voxels along a brick's edge.
@@ -23,7 +23,9 @@ pub(crate) const BRICK: usize = EDGE * LAYER;
 /// midway through the sheet nothing beyond is seen.
 const MARGIN: usize = 3;
 
-const ABSENT: u32 = u32::MAX;
+/// Entry of a directory where the part has no brick; present ones hold their index plus one.
+const ABSENT: u32 = 0;
+const PRESENT: u32 = 1;
 
 /// The bricks of one part: a dense directory over the part's bounding box.
 #[derive(Debug, Clone)]
@@ -34,7 +36,7 @@ pub(crate) struct Directory {
     low: [usize; 3],
     /// Bricks in the bounding box along x, y, z.
     extent: [usize; 3],
-    /// Index of each brick among all bricks of the batch.
+    /// Index of each brick among all bricks of the batch, plus one.
     index: Vec<u32>,
     /// Places of the present bricks, ordered by z, y, x.
     pub places: Vec<[usize; 3]>,
@@ -57,7 +59,7 @@ impl Directory {
             dimensions,
             low,
             extent,
-            index: filled(extent.iter().product(), ABSENT)?,
+            index: zeros(extent.iter().product())?,
             places: Vec::new(),
             first,
         };
@@ -66,7 +68,7 @@ impl Directory {
             for bz in z.0..=z.1 {
                 for by in y.0..=y.1 {
                     let row = directory.cell([x.0, by, bz]);
-                    directory.index[row..=row + x.1 - x.0].fill(0);
+                    directory.index[row..=row + x.1 - x.0].fill(PRESENT);
                 }
             }
         }
@@ -79,7 +81,7 @@ impl Directory {
         self.places = reserved(present)?;
         for (cell, index) in self.index.iter_mut().enumerate() {
             if *index != ABSENT {
-                *index = (self.first + self.places.len()) as u32;
+                *index = (self.first + self.places.len() + 1) as u32;
                 let [nx, ny, _] = self.extent;
                 let at = [cell % nx, cell / nx % ny, cell / nx / ny];
                 self.places.push(std::array::from_fn(|a| at[a] + self.low[a]));
@@ -102,7 +104,7 @@ impl Directory {
             return None;
         }
         let index = self.index[self.cell(place)];
-        (index != ABSENT).then_some(index as usize)
+        (index != ABSENT).then(|| index as usize - 1)
     }
 
     /// Entry of a voxel in the batch's arrays, `None` where the part has no brick.
@@ -169,7 +171,7 @@ impl<'a> Batch<'a> {
 
     /// A field over all bricks, filled with zero.
     pub fn field(&self) -> Result<Vec<f32>> {
-        filled(self.part_of_brick.len() * BRICK, 0.0)
+        zeros(self.part_of_brick.len() * BRICK)
     }
 
     /// The directory that brick `index` belongs to, and the brick's place.

@@ -74,9 +74,10 @@ pub(crate) fn reserved<T>(length: usize) -> Result<Vec<T>> {
     Ok(buffer)
 }
 
-/// A vector of `length` copies of `value`, or an error where memory is refused.
-pub(crate) fn filled<T: Clone>(length: usize, value: T) -> Result<Vec<T>> {
-    let mut buffer = reserved(length)?;
-    buffer.resize(length, value);
-    Ok(buffer)
+/// A vector of `length` zeros, or an error where memory is refused.
+pub(crate) fn zeros<T: Clone + Default>(length: usize) -> Result<Vec<T>> {
+    // Asked for first, so that a refusal is an error; then made by the allocator's own zeroing,
+    // which leaves touching the pages to the workers.
+    drop(reserved::<T>(length)?);
+    Ok(vec![T::default(); length])
 }

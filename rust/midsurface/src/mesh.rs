@@ -1,6 +1,6 @@
 //! The result: a triangle mesh, and the invariants it keeps.
 
-use crate::error::{reserved, Result};
+use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::flips::flip_edges;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
@@ -91,18 +91,19 @@ impl Mesh {
             ..Self::default()
         };
         let normals = normals(&surface.points, &surface.triangles);
-        let mut number = crate::error::filled(surface.points.len(), u32::MAX)?;
+        // Number of each point in the mesh plus one; 0 for points that no triangle uses.
+        let mut number: Vec<u32> = zeros(surface.points.len())?;
         mesh.triangles = reserved(surface.triangles.len())?;
         for triangle in &surface.triangles {
             mesh.triangles.push(triangle.map(|p| {
                 let p = p as usize;
-                if number[p] == u32::MAX {
-                    number[p] = mesh.points.len() as u32;
+                if number[p] == 0 {
+                    number[p] = mesh.points.len() as u32 + 1;
                     mesh.points.push(surface.points[p].map(|v| v as f32));
                     mesh.normals.push(normals[p].map(|v| v as f32));
                     mesh.thickness.push(polylines.thickness[surface.source[p] as usize]);
                 }
-                number[p]
+                number[p] - 1
             }));
         }
         Ok(mesh)

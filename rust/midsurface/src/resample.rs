@@ -15,7 +15,8 @@ const LEAST_SHIFTED: usize = 4;
 const STEPS: f64 = 24.0;
 
 pub(crate) fn distance(a: Point, b: Point) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
+    let d = [a[0] - b[0], a[1] - b[1]];
+    (d[0] * d[0] + d[1] * d[1]).sqrt()
 }
 
 pub(crate) fn arc_length(line: &Trace) -> f64 {

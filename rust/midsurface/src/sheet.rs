@@ -12,7 +12,7 @@
 
 use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
 use crate::eigen::{eigenvalues, eigenvector, Symmetric};
-use crate::error::{filled, Result};
+use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, Vec3};
 use crate::separable::{smooth, Kernel};
@@ -20,13 +20,15 @@ use crate::separable::{smooth, Kernel};
 /// No sheet is taken to have shrunk by more, work units.
 const MOST_SHRUNK: f64 = 0.75;
 
-/// What a voxel knows of its sheet; an unknown one has a zero normal.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Sheet {
-    /// Unit normal, of either sign.
-    pub normal: [f32; 3],
-    /// Distance from the voxel to the crest along the normal, work units.
-    pub offset: f32,
+/// What a voxel knows of its sheet: the unit normal, of either sign, and the distance from the voxel
+/// to the crest along it, work units. All zero where the voxel knows none. An array, so that the
+/// allocator can zero a field of them.
+pub(crate) type Sheet = [f32; 4];
+
+/// The normal of a voxel's sheet, `None` where the voxel knows none.
+pub(crate) fn normal(sheet: &Sheet) -> Option<Vec3> {
+    let [x, y, z, _] = sheet.map(f64::from);
+    (*sheet != [0.0; 4]).then_some([x, y, z])
 }
 
 /// Passes over all bricks that [`sheets`] makes, for its progress.
@@ -45,7 +47,7 @@ pub(crate) fn sheets(
     scratch: &mut Vec<f32>,
     execution: &mut Execution,
 ) -> Result<Vec<Sheet>> {
-    let mut sources: Vec<[f32; 3]> = filled(ridge.len(), [0.0; 3])?;
+    let mut sources: Vec<[f32; 3]> = zeros(ridge.len())?;
     execution.fill(&mut sources, BRICK, |brick, out| {
         let block = Block::gather(batch, brick, ridge);
         for (i, out) in out.iter_mut().enumerate() {
@@ -83,14 +85,14 @@ pub(crate) fn sheets(
         tensor.push(smooth(batch, &kernels, product, scratch, execution)?);
     }
     drop(sources);
-    let mut sheets = filled(ridge.len(), Sheet::default())?;
+    let mut sheets: Vec<Sheet> = zeros(ridge.len())?;
     execution.fill(&mut sheets, BRICK, |brick, out| {
         let block = Block::gather(batch, brick, ridge);
         let near = Block::gather(batch, brick, distance);
         let sigma = scale[batch.part_of_brick[brick] as usize];
         for (i, out) in out.iter_mut().enumerate() {
-            if near.any_near(i) {
-                let entry = brick * BRICK + i;
+            let entry = brick * BRICK + i;
+            if distance[entry] > 0.0 || near.any_near(i) {
                 let [xx, yy, xy, xz, yz] =
                     std::array::from_fn(|k| f64::from(tensor[k][entry]));
                 let tensor = [xx, yy, 0.0, xy, xz, yz];
@@ -110,15 +112,15 @@ pub(crate) fn unshrink(
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<()> {
-    let mut corrected = filled(sheets.len(), Sheet::default())?;
+    let mut corrected: Vec<Sheet> = zeros(sheets.len())?;
     execution.fill(&mut corrected, BRICK, |brick, out| {
         let (directory, place) = batch.brick(brick);
         let half_variance = 0.5 * variance[batch.part_of_brick[brick] as usize];
         for (i, out) in out.iter_mut().enumerate() {
             *out = sheets[brick * BRICK + i];
-            if out.normal != [0.0; 3] {
+            if normal(out).is_some() {
                 let shift = half_variance * divergence(directory, place, i, sheets, h);
-                out.offset += shift.clamp(-MOST_SHRUNK, MOST_SHRUNK) as f32;
+                out[3] += shift.clamp(-MOST_SHRUNK, MOST_SHRUNK) as f32;
             }
         }
     })?;
@@ -135,10 +137,7 @@ fn divergence(
     h: Vec3,
 ) -> f64 {
     let voxel = [i % EDGE, i / EDGE % EDGE, i / LAYER].map(|v| v as isize);
-    let known = |at: [isize; 3]| {
-        let normal = sheets[neighbour(directory, place, at)?].normal.map(f64::from);
-        (normal != [0.0; 3]).then_some(normal)
-    };
+    let known = |at: [isize; 3]| normal(&sheets[neighbour(directory, place, at)?]);
     let Some(own) = known(voxel) else {
         return 0.0;
     };
@@ -181,10 +180,7 @@ fn sheet(tensor: Symmetric, value: f64, (gradient, hessian): (Vec3, Symmetric), 
     let offset = -slope * value / curvature;
     let known = value > 0.0 && curvature < 0.0 && offset.abs() <= TRUSTED * sigma + 0.5;
     if known {
-        Sheet {
-            normal: n.map(|v| v as f32),
-            offset: offset as f32,
-        }
+        [n[0], n[1], n[2], offset].map(|v| v as f32)
     } else {
         Sheet::default()
     }

@@ -5,7 +5,7 @@ use crate::components::DisjointSets;
 use crate::grid::{along, dot, unit, Vec3};
 use crate::interpolation::Sampler;
 use crate::runs::Run;
-use crate::sheet::Sheet;
+use crate::sheet::{normal, Sheet};
 
 /// A pixel as column and row.
 pub(crate) type Pixel = [usize; 2];
@@ -92,19 +92,17 @@ impl<'a> Slice<'a> {
                 *corner = (weight, self.sheets[entry]);
             }
         }
-        let known = |c: &(f64, Sheet)| c.1.normal != [0.0; 3];
-        let first = corners.iter().filter(|c| known(c)).max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let first = first.1.normal.map(f64::from);
-        let (mut normal, mut offset, mut total) = ([0.0; 3], 0.0, 0.0);
-        for (weight, sheet) in corners.iter().filter(|c| known(c)) {
-            let n = sheet.normal.map(f64::from);
+        let known = || corners.iter().filter_map(|(w, sheet)| Some((w, normal(sheet)?, sheet[3])));
+        let (_, first, _) = known().max_by(|a, b| a.0.total_cmp(b.0))?;
+        let (mut mean, mut offset, mut total) = ([0.0; 3], 0.0, 0.0);
+        for (weight, n, distance) in known() {
             // Normals have no sign of their own: all turned like the first.
             let signed = weight.copysign(dot(n, first));
-            normal = along(normal, signed, n);
-            offset += signed * f64::from(sheet.offset);
+            mean = along(mean, signed, n);
+            offset += signed * f64::from(distance);
             total += weight;
         }
-        (total >= 0.25).then(|| (unit(normal), offset / total))
+        (total >= 0.25).then(|| (unit(mean), offset / total))
     }
 
     /// Finds the slice's components (8 neighbours) and marks their pixels with their numbers.
@@ -196,9 +194,13 @@ impl<'a> Slice<'a> {
         for y in range(1) {
             for x in range(0) {
                 let (dx, dy) = (x as f64 * h[0] - p[0], y as f64 * h[1] - p[1]);
-                let near = dx * dx + dy * dy <= radius * radius;
-                if near && self.component([x, y]) == Some(component) {
-                    self.set([x, y], COVERED);
+                if dx * dx + dy * dy > radius * radius {
+                    continue;
+                }
+                if let Some(entry) = self.entry(x, y) {
+                    if self.component[entry] == component {
+                        self.flags[entry] |= COVERED;
+                    }
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! Both faces of the label as seen from a point of the mid-surface: how thick the label is there,
 //! and how far off its middle the point lies.
 
+use crate::bricks::{EDGE, LAYER};
 use crate::grid::{along, Vec3};
 use crate::interpolation::Sampler;
 
@@ -77,16 +78,25 @@ fn labelled(distance: &Sampler, p: Vec3) -> Option<f64> {
         return None;
     }
     let low = voxel.map(|v| v.floor());
+    let t: Vec3 = std::array::from_fn(|a| voxel[a] - low[a]);
+    let low = low.map(|v| v as usize);
+    let mask = |entry: usize| f64::from(u8::from(distance.field[entry] > 0.0));
+    let weight = |corner: usize| -> f64 {
+        (0..3).map(|a| if corner >> a & 1 == 1 { t[a] } else { 1.0 - t[a] }).product()
+    };
+    if low.iter().all(|v| v % EDGE + 1 < EDGE) {
+        // All eight voxels are in one brick.
+        let first = distance.directory.entry(low);
+        let offset = |corner: usize| (corner >> 2) * LAYER + (corner >> 1 & 1) * EDGE + (corner & 1);
+        let sum = |first| (0..8).map(|corner| weight(corner) * mask(first + offset(corner))).sum();
+        return Some(first.map_or(0.0, sum));
+    }
     let mut sum = 0.0;
     for corner in 0..8 {
-        let offset: [usize; 3] = std::array::from_fn(|a| corner >> a & 1);
-        let weight: f64 = (0..3)
-            .map(|a| if offset[a] == 1 { voxel[a] - low[a] } else { 1.0 - voxel[a] + low[a] })
-            .product();
+        let weight = weight(corner);
         if weight > 0.0 {
-            let at: [usize; 3] = std::array::from_fn(|a| low[a] as usize + offset[a]);
-            let entry = distance.directory.entry(at);
-            sum += weight * f64::from(entry.is_some_and(|e| distance.field[e] > 0.0));
+            let at: [usize; 3] = std::array::from_fn(|a| low[a] + (corner >> a & 1));
+            sum += weight * distance.directory.entry(at).map_or(0.0, mask);
         }
     }
     Some(sum)
