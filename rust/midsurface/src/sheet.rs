@@ -61,7 +61,7 @@ pub(crate) fn sheets(
         .iter()
         .zip(&batch.directories)
         .map(|(sigma, directory)| {
-            let rho = (1.4 * sigma).clamp(1.2, 4.0);
+            let rho = (1.4 * sigma).clamp(1.2, 3.0);
             Kernel::axes(rho, 1.7 * rho, h, directory)
         })
         .collect();
@@ -114,12 +114,12 @@ pub(crate) fn unshrink(
 ) -> Result<()> {
     let mut corrected: Vec<Sheet> = zeros(sheets.len())?;
     execution.fill(&mut corrected, BRICK, |brick, out| {
-        let (directory, place) = batch.brick(brick);
+        let (directory, _) = batch.brick(brick);
         let half_variance = 0.5 * variance[batch.part_of_brick[brick] as usize];
         for (i, out) in out.iter_mut().enumerate() {
             *out = sheets[brick * BRICK + i];
             if normal(out).is_some() {
-                let shift = half_variance * divergence(directory, place, i, sheets, h);
+                let shift = half_variance * divergence(directory, brick, i, sheets, h);
                 out[3] += shift.clamp(-MOST_SHRUNK, MOST_SHRUNK) as f32;
             }
         }
@@ -131,13 +131,23 @@ pub(crate) fn unshrink(
 /// div n at voxel i of the brick at `place`; differences with unknown neighbours are left out.
 fn divergence(
     directory: &Directory,
-    place: [usize; 3],
+    brick: usize,
     i: usize,
     sheets: &[Sheet],
     h: Vec3,
 ) -> f64 {
     let voxel = [i % EDGE, i / EDGE % EDGE, i / LAYER].map(|v| v as isize);
-    let known = |at: [isize; 3]| normal(&sheets[neighbour(directory, place, at)?]);
+    let place = directory.places[brick - directory.first];
+    let known = |at: [isize; 3]| {
+        let within = at.iter().all(|v| (0..EDGE as isize).contains(v));
+        let entry = if within {
+            let [x, y, z] = at.map(|v| v as usize);
+            brick * BRICK + z * LAYER + y * EDGE + x
+        } else {
+            neighbour(directory, place, at)?
+        };
+        normal(&sheets[entry])
+    };
     let Some(own) = known(voxel) else {
         return 0.0;
     };
