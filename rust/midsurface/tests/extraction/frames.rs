@@ -1,0 +1,156 @@
+//! Spacing, origin, extent, direction and units: the mesh lies where the voxels lie.
+
+use midsurface::{Grid, Mesh};
+use phantoms::*;
+
+use crate::measure::{assert_matches, extract_all, grid, mesh_of};
+
+/// A rotation about an axis that is none of the image's.
+fn rotation(degrees: f64) -> [Vec3; 3] {
+    let (s, c) = degrees.to_radians().sin_cos();
+    let [x, y, z] = [2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0];
+    let t = 1.0 - c;
+    [
+        [t * x * x + c, t * x * y - s * z, t * x * z + s * y],
+        [t * x * y + s * z, t * y * y + c, t * y * z - s * x],
+        [t * x * z - s * y, t * y * z + s * x, t * z * z + c],
+    ]
+}
+
+/// Asserts that `mesh` is `original` with its points moved by `place`, to 1e-5 of its extent.
+fn assert_moved(original: &Mesh, mesh: &Mesh, scale: f64, place: impl Fn(Vec3) -> Vec3) {
+    assert!(!mesh.triangles.is_empty());
+    assert_eq!(mesh.triangles, original.triangles);
+    assert_eq!(mesh.components, original.components);
+    for (p, q) in original.points.iter().zip(&mesh.points) {
+        let expected = place(p.map(f64::from));
+        for (expected, found) in expected.iter().zip(q) {
+            // f32 keeps 24 bits: far from the origin that, and not the work, is the limit.
+            let slack = 1e-5 * 64.0 * scale + 2e-7 * expected.abs();
+            assert!(
+                (expected - f64::from(*found)).abs() <= slack,
+                "{expected} {found}"
+            );
+        }
+    }
+    for (a, b) in original.thickness.iter().zip(&mesh.thickness) {
+        let expected = f64::from(*a) * scale;
+        assert!(
+            (expected - f64::from(*b)).abs() <= 1e-5 * expected,
+            "{expected} {b}"
+        );
+    }
+}
+
+fn noisy_sheet() -> Phantom {
+    let frame = Frame::new([36, 40, 24]);
+    let hole = hole_in_the_middle(&frame, 7.0);
+    sheet(frame, leaning(25.0, 40.0), 5.0, &[hole]).with_noise(0.05, 3)
+}
+
+#[test]
+fn other_units_give_the_same_mesh_scaled() {
+    let phantoms = [noisy_sheet(), tube(Frame::new([48, 48, 10]), 17.0, 5.0)];
+    for phantom in phantoms {
+        let original = mesh_of(&phantom);
+        for scale in [10.0, 0.1, 1e-9, 1e9, 12.44, 1.0 / 3.0, 7.3e-4] {
+            let mut grid = grid(&phantom.frame);
+            grid.spacing = [scale; 3];
+            let (mesh, _) = extract_all(&phantom.labels, grid);
+            assert_moved(&original, &mesh, scale, |p| p.map(|v| v * scale));
+        }
+    }
+}
+
+#[test]
+fn other_units_of_anisotropic_voxels_give_the_same_mesh_scaled() {
+    let spacing = [1.1, 0.7, 1.9];
+    let frame = Frame::with_spacing([40, 60, 20], spacing);
+    let phantom = sheet(frame, leaning(15.0, 60.0), 5.0, &[]);
+    let original = mesh_of(&phantom);
+    for scale in [10.0, 0.1, 1e-9, 1.0 / 3.0] {
+        let mut grid = grid(&phantom.frame);
+        grid.spacing = spacing.map(|s| s * scale);
+        let (mesh, _) = extract_all(&phantom.labels, grid);
+        assert_moved(&original, &mesh, scale, |p| p.map(|v| v * scale));
+    }
+}
+
+#[test]
+fn origin_and_direction_move_the_mesh() {
+    let phantom = noisy_sheet();
+    let original = mesh_of(&phantom);
+    for degrees in [0.0, 30.0, 90.0, 200.0] {
+        let (origin, direction) = ([-120.5, 33.25, 1000.0], rotation(degrees));
+        let grid = Grid {
+            origin,
+            direction,
+            ..grid(&phantom.frame)
+        };
+        let (mesh, _) = extract_all(&phantom.labels, grid);
+        let turn = |p: Vec3| -> Vec3 {
+            std::array::from_fn(|r| (0..3).map(|c| direction[r][c] * p[c]).sum())
+        };
+        assert_moved(&original, &mesh, 1.0, |p| {
+            let turned = turn(p);
+            std::array::from_fn(|a| origin[a] + turned[a])
+        });
+        for (a, b) in original.normals.iter().zip(&mesh.normals) {
+            let turned = turn(a.map(f64::from));
+            let cosine: f64 = (0..3).map(|k| turned[k] * f64::from(b[k])).sum();
+            assert!(cosine > 1.0 - 1e-5, "normals {a:?} and {b:?}");
+        }
+    }
+}
+
+#[test]
+fn the_extent_start_moves_the_mesh() {
+    let phantom = noisy_sheet();
+    let original = mesh_of(&phantom);
+    // Even slices stay even: neighbouring slices are sampled half an edge apart.
+    let extent_start = [5, -9, -106];
+    let grid = Grid {
+        extent_start,
+        spacing: [2.0; 3],
+        ..grid(&phantom.frame)
+    };
+    let (mesh, _) = extract_all(&phantom.labels, grid);
+    assert_moved(&original, &mesh, 2.0, |p| {
+        std::array::from_fn(|a| 2.0 * (p[a] + extent_start[a] as f64))
+    });
+}
+
+#[test]
+fn everything_at_once_is_still_accurate() {
+    for (tilt, azimuth) in [(0.0, 10.0), (25.0, 40.0), (40.0, 70.0)] {
+        let mut frame = Frame::with_spacing([56; 3], [0.8; 3]);
+        frame.extent_start = [11, -20, 7];
+        frame.origin = [100.0, -40.0, 17.5];
+        frame.direction = rotation(50.0);
+        // Leaning is relative to the image's axes.
+        let across = leaning(tilt, azimuth);
+        let normal =
+            std::array::from_fn(|r| (0..3).map(|c| frame.direction[r][c] * across[c]).sum());
+        let hole = hole_in_the_middle(&frame, 8.0);
+        assert_matches(&sheet(frame, normal, 3.6, &[hole]), 0.1);
+    }
+}
+
+#[test]
+fn anisotropic_voxels_are_accurate() {
+    for spacing in [
+        [1.0, 1.0, 2.0],
+        [2.0, 1.0, 1.0],
+        [1.0, 1.5, 1.0],
+        [1.0, 1.0, 0.5],
+    ] {
+        for tilt in [0.0, 20.0] {
+            let dimensions = spacing.map(|s: f64| (48.0 / s) as usize);
+            let frame = Frame::with_spacing(dimensions, spacing);
+            let phantom = sheet(frame, leaning(tilt, 33.0), 6.0, &[]);
+            assert_matches(&phantom, 0.15);
+        }
+    }
+    let frame = Frame::with_spacing([64, 64, 12], [1.0, 1.0, 2.5]);
+    assert_matches(&tube(frame, 25.0, 6.0), 0.15);
+}

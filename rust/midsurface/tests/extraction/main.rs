@@ -1,0 +1,19 @@
+//! The whole extraction from outside, on label volumes whose mid-surface is known, on random ones
+//! and on real ones. One program, so that it is linked once.
+
+mod accuracy;
+mod bad_input;
+mod chain;
+mod determinism;
+mod fields;
+mod frames;
+mod labels;
+mod measure;
+mod observer;
+mod polylines;
+mod random_polylines;
+mod random_volumes;
+mod real_data;
+mod thickness;
+mod topology;
+mod vtk_image;
