@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use midsurface::{mid_polylines, Options, Quiet, Volume};
 use phantoms::*;
 
-use crate::measure::{assert_matches, extract_all, grid, mesh_of, report_of};
+use crate::measure::{assert_all_match, assert_matches, extract_all, grid, mesh_of, report_of};
 
 /// The slices that a phantom's lines lie in, and the number of lines that are not closed.
 fn slices_and_open_lines(phantom: &Phantom) -> (BTreeSet<i64>, usize) {
@@ -69,18 +69,67 @@ fn two_holes_are_two_loops_more() {
 
 #[test]
 fn sheets_close_together_stay_apart() {
-    for gap in [1.0, 2.0] {
-        for tilt in [0.0, 20.0] {
-            for azimuth in [0.0, 45.0] {
-                let frame = Frame::new([40; 3]);
-                let normal = leaning(tilt, azimuth);
-                // On the diagonal a gap must be wider for a voxel to be in it everywhere.
-                let gap = gap * normal.iter().map(|v| v.abs()).fold(0.0, f64::max).recip();
-                let phantom = two_sheets(frame, normal, 4.0, gap, [1, 1]);
-                assert_matches(&phantom, 0.15);
-            }
-        }
-    }
+    let places = [(0.0, 0.0), (0.0, 45.0), (20.0, 0.0), (20.0, 45.0)];
+    let sheets = places.into_iter().flat_map(|(tilt, azimuth)| {
+        [1.0, 2.0].map(|voxels| {
+            let normal = leaning(tilt, azimuth);
+            // As wide as it takes for so many voxels to fit in everywhere along an axis.
+            let gap = voxels * normal.iter().map(|v| v.abs()).fold(0.0, f64::max);
+            let name = format!("{tilt} degrees, azimuth {azimuth}, {voxels} voxels apart");
+            (
+                name,
+                two_sheets(Frame::new([40; 3]), normal, 4.0, gap, [1, 1]),
+            )
+        })
+    });
+    assert_all_match(sheets, 0.15);
+}
+
+#[test]
+fn membranes_that_are_nowhere_flat_come_without_a_warning() {
+    let cube = || Frame::new([64; 3]);
+    let upright = || {
+        sheet(
+            cube(),
+            leaning(0.0, 33.0),
+            6.0,
+            &[hole_in_the_middle(&cube(), 12.0)],
+        )
+    };
+    let phantoms = [
+        ("tube", tube(Frame::new([64, 64, 16]), 25.0, 6.0)),
+        (
+            "tube with noise",
+            tube(Frame::new([64, 64, 16]), 25.0, 6.0).with_noise(0.05, 7),
+        ),
+        ("upright sheet", upright()),
+        ("upright sheet with noise", upright().with_noise(0.05, 1)),
+        (
+            "leaning sheet, 3 thick",
+            sheet(cube(), leaning(30.0, 33.0), 3.0, &[]),
+        ),
+        (
+            "leaning sheet, 6 thick",
+            sheet(cube(), leaning(30.0, 33.0), 6.0, &[]),
+        ),
+        (
+            "upright disk",
+            disk(
+                cube(),
+                leaning(0.0, 33.0),
+                22.0,
+                0.0,
+                Thickness::Constant(4.0),
+            ),
+        ),
+    ];
+    let warned: Vec<String> = phantoms
+        .iter()
+        .map(|(name, phantom)| (name, extract_all(&phantom.labels, grid(&phantom.frame)).1))
+        .filter(|(_, warnings)| !warnings.is_empty())
+        .map(|(name, warnings)| format!("{name}: {warnings:?}"))
+        .collect();
+    assert!(warned.is_empty(), "{}", warned.join("\n"));
 }
 
 /// A 3 thick sheet and, well apart from it in the same volume, a ball of the same label.
