@@ -16,7 +16,7 @@ use crate::ridge::RidgeField;
 use crate::runs::Run;
 use crate::slice::{Pixel, Point, Slice, COVERED};
 use crate::centre::centre;
-use crate::thickness::Faces;
+use crate::thickness::View;
 use crate::resample::{arc_length, distance, resample};
 use crate::trace::{trace, Trace};
 
@@ -123,11 +123,11 @@ impl<'a> PartField<'a> {
         }
     }
 
-    /// Both faces of the label as seen from a point of a slice, where the sheet is known.
-    fn faces(&self, slice: &Slice, p: Point) -> Option<Faces> {
+    /// What a point of a slice sees of the label, where the sheet is known.
+    fn view(&self, slice: &Slice, p: Point) -> Option<View> {
         let from = [p[0], p[1], slice.z as f64 * self.h[2]];
         let (normal, _) = slice.sheet(p)?;
-        Some(Faces::new(&self.sampler(&self.field.distance), from, normal))
+        Some(View::new(&self.sampler(&self.field.distance), from, normal))
     }
 }
 
@@ -160,17 +160,17 @@ fn trace_slice(part: PartField, runs: &[Run]) -> SliceLines {
 
 /// Moves a line's points to the middle between both faces, and measures the thickness there.
 fn finish(part: PartField, slice: &Slice, mut line: Trace) -> (Trace, Vec<f64>) {
-    let faces: Vec<Option<Faces>> = line.points.iter().map(|&p| part.faces(slice, p)).collect();
-    centre(slice, &mut line, &faces);
-    let known = |i: usize| faces[i].map(|faces| faces.thickness());
+    let views: Vec<Option<View>> = line.points.iter().map(|&p| part.view(slice, p)).collect();
+    centre(slice, &mut line, &views);
+    let known = |i: usize| views[i].as_ref().map(|view| view.thickness);
     // A point at a corner may see no sheet: it takes its neighbour's thickness.
     let nearest = |i: usize| {
-        (0..faces.len()).find_map(|k| {
+        (0..views.len()).find_map(|k| {
             let before = i.checked_sub(k).and_then(known);
-            before.or_else(|| (i + k < faces.len()).then(|| known(i + k)).flatten())
+            before.or_else(|| (i + k < views.len()).then(|| known(i + k)).flatten())
         })
     };
-    let thickness = (0..faces.len()).map(|i| nearest(i).unwrap_or(0.0)).collect();
+    let thickness = (0..views.len()).map(|i| nearest(i).unwrap_or(0.0)).collect();
     (line, thickness)
 }
 

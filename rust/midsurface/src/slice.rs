@@ -159,6 +159,12 @@ impl<'a> Slice<'a> {
         (0..2).all(|a| p[a] >= 0.0 && p[a] <= (n[a] - 1) as f64 * h[a])
     }
 
+    /// Whether a point lies on a border of the volume across x, and across y.
+    pub fn on_border(&self, p: Point) -> [bool; 2] {
+        let (h, n) = (self.h(), self.directory().dimensions);
+        std::array::from_fn(|a| p[a].min((n[a] - 1) as f64 * h[a] - p[a]) < 1e-2 * h[a])
+    }
+
     /// The nearest point within the volume.
     pub fn clamp(&self, p: Point) -> Point {
         let (h, n) = (self.h(), self.directory().dimensions);

@@ -2,45 +2,70 @@
 //! and how far off its middle the point lies.
 
 use crate::bricks::{EDGE, LAYER};
-use crate::grid::{along, Vec3};
+use crate::grid::{along, length, unit, Vec3};
 use crate::interpolation::Sampler;
 
 /// Step along the ray, work units; the face is then found by linear interpolation.
 const STEP: f64 = 0.5;
 
 /// How a ray through the label ended, after which length.
-#[derive(Clone, Copy)]
 enum Reach {
     Face(f64),
     Border(f64),
 }
 
-/// Both faces of the label as seen from a point, work units.
-#[derive(Clone, Copy)]
-pub(crate) struct Faces([Reach; 2]);
+/// What a point sees of the label, work units.
+pub(crate) struct View {
+    /// The sheet's unit normal.
+    pub normal: Vec3,
+    /// Distance between both faces along the normal; twice the distance to the one face where the
+    /// other lies outside the volume.
+    pub thickness: f64,
+    /// How far along the normal the middle is, where both faces are seen.
+    pub to_middle: Option<f64>,
+    /// Whether a border of the volume cuts off what the ridge field should have seen here.
+    pub at_border: bool,
+}
 
-impl Faces {
-    /// Looks both ways along the sheet's normal.
+impl View {
+    /// Looks both ways along the sheet's normal. Near a border of the volume, where one of these
+    /// rays or the ridge field's reach ends in the unknown, the middle is looked for parallel to
+    /// the border: across a sheet that is flat nearby, every line's middle is on the mid-surface.
     pub fn new(distance: &Sampler, from: Vec3, normal: Vec3) -> Self {
-        Self([normal, normal.map(|v| -v)].map(|direction| face(distance, from, direction)))
-    }
-
-    /// Distance between the faces; twice the distance to the one face where the other lies outside
-    /// the volume.
-    pub fn thickness(&self) -> f64 {
-        match self.0 {
+        let look = |v: Vec3| [v, v.map(|x| -x)].map(|direction| face(distance, from, direction));
+        let along_normal = look(normal);
+        let thickness = match along_normal {
             [Reach::Face(a), Reach::Face(b)] | [Reach::Border(a), Reach::Border(b)] => a + b,
             [Reach::Face(a), Reach::Border(_)] | [Reach::Border(_), Reach::Face(a)] => 2.0 * a,
-        }
-    }
-
-    /// How far along the normal the middle is, where both faces are seen.
-    pub fn to_middle(self) -> Option<f64> {
-        match self.0 {
-            [Reach::Face(a), Reach::Face(b)] => Some(0.5 * (a - b)),
+        };
+        let across = parallel_to_border(distance, from, normal, thickness);
+        let at_border = across != normal;
+        let faces = if at_border { look(unit(across)) } else { along_normal };
+        let to_middle = match faces {
+            // A corner of the volume leaves too little of the normal to look along.
+            [Reach::Face(a), Reach::Face(b)] if length(across) > 0.5 => {
+                Some(0.5 * (a - b) * length(across))
+            }
             _ => None,
+        };
+        Self {
+            normal,
+            thickness,
+            to_middle,
+            at_border,
         }
     }
+}
+
+/// The part of the normal that is parallel to all borders that are so near that the ridge field
+/// missed a part of the sheet beyond them.
+fn parallel_to_border(distance: &Sampler, p: Vec3, normal: Vec3, thickness: f64) -> Vec3 {
+    let near = |a: usize| {
+        let last = (distance.directory.dimensions[a] - 1) as f64 * distance.h[a];
+        // The field reaches half a thickness to the face, and as far again by its Gaussian.
+        p[a].min(last - p[a]) < thickness * normal[a].abs()
+    };
+    std::array::from_fn(|a| if near(a) { 0.0 } else { normal[a] })
 }
 
 /// Follows a ray until the label ends.
