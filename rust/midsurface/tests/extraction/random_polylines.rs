@@ -60,9 +60,14 @@ fn walks() -> impl Strategy<Value = Polylines> {
     prop::collection::vec(prop::collection::vec(line, 1..3), 2..7).prop_map(assemble)
 }
 
+/// What is refused is refused for its planes only, and told to be so by `check`.
 fn assert_zips(polylines: &Polylines) {
     let mesh = zip_polylines(polylines, &Options::default(), &mut Quiet::default());
-    assert_sound(&mesh.expect("a mesh"));
+    match (polylines.check(), mesh) {
+        (Ok(()), Ok(mesh)) => assert_sound(&mesh),
+        (Err(expected), Err(found)) => assert_eq!(expected, found),
+        (check, _) => panic!("the check says {check:?}, the zipper something else"),
+    }
 }
 
 proptest! {
@@ -83,6 +88,7 @@ proptest! {
 
     #[test]
     fn walks_with_folds(polylines in walks()) {
+        prop_assert_eq!(polylines.check(), Ok(()));
         assert_zips(&polylines);
     }
 

@@ -40,17 +40,34 @@ fn sheets_reach_all_slices() {
     }
 }
 
+/// Asserts that the mesh spans the volume along an axis.
+fn assert_spans(phantom: &Phantom, axis: usize) {
+    let mesh = mesh_of(phantom);
+    let along = || mesh.points.iter().map(|p| f64::from(p[axis]));
+    let (first, last) = (
+        along().fold(f64::MAX, f64::min),
+        along().fold(f64::MIN, f64::max),
+    );
+    let end = phantom.frame.dimensions[axis] as f64 - 1.0;
+    assert!(
+        first.abs() < 0.01 && (last - end).abs() < 0.01,
+        "from {first} to {last} of {end}"
+    );
+}
+
 #[test]
 fn the_surface_runs_on_to_the_border() {
-    let mesh = mesh_of(&tube(Frame::new([48, 48, 10]), 16.0, 4.0));
-    let heights = mesh.points.iter().map(|p| p[2]);
-    assert_eq!(heights.clone().fold(f32::MAX, f32::min), 0.0);
-    assert_eq!(heights.fold(f32::MIN, f32::max), 9.0);
-
-    let mesh = mesh_of(&sheet(Frame::new([40, 48, 10]), [0.0, 1.0, 0.0], 4.0, &[]));
-    let across = mesh.points.iter().map(|p| p[0]);
-    assert_eq!(across.clone().fold(f32::MAX, f32::min), 0.0);
-    assert_eq!(across.fold(f32::MIN, f32::max), 39.0);
+    assert_spans(&tube(Frame::new([48, 48, 10]), 16.0, 4.0), 2);
+    for axis in [0, 2] {
+        assert_spans(
+            &sheet(Frame::new([40, 48, 10]), [0.0, 1.0, 0.0], 4.0, &[]),
+            axis,
+        );
+        assert_spans(
+            &sheet(Frame::new([40, 60, 24]), leaning(30.0, 70.0), 4.0, &[]),
+            axis,
+        );
+    }
 }
 
 #[test]
