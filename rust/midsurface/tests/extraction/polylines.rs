@@ -195,28 +195,53 @@ fn components_and_labels_are_not_joined() {
 }
 
 #[test]
-fn duplicate_points_and_short_lines_are_borne() {
+fn duplicate_points_are_borne() {
     let mut polylines = straight(4, 10);
     polylines.points[5] = polylines.points[4];
     polylines.points[14] = polylines.points[15];
     polylines.points[24] = polylines.points[25];
     polylines.points[26] = polylines.points[25];
     assert_sound(&zip(&polylines).expect("a mesh"));
+}
 
+#[test]
+fn a_line_of_a_single_place_is_borne() {
     let mut polylines = straight(4, 10);
     for p in &mut polylines.points[10..20] {
         *p = [3.0, 0.0, 1.0];
     }
     assert_sound(&zip(&polylines).expect("a mesh"));
+}
 
+#[test]
+fn short_lines_are_borne() {
     for count in [0, 1, 2, 3] {
         for closed in [false, true] {
-            let mut polylines = straight(3, 6);
+            let mut polylines = rings(3);
             polylines.lines[1].count = count;
             polylines.lines[1].closed = closed;
             assert_sound(&zip(&polylines).expect("a mesh"));
         }
     }
+}
+
+#[test]
+fn a_line_that_turns_back_on_itself_is_borne() {
+    let mut polylines = Polylines::default();
+    let row = |columns: &[f64], slice: i64| -> Vec<[f64; 3]> {
+        columns
+            .iter()
+            .map(|x| [1.4 * x, 0.0, slice as f64])
+            .collect()
+    };
+    add_line(
+        &mut polylines,
+        row(&[0.0, 1.0, 0.0, 1.0, 2.0, 1.0], 0),
+        0,
+        false,
+    );
+    add_line(&mut polylines, row(&[0.0, 1.0, 2.0], 1), 1, false);
+    assert_sound(&zip(&polylines).expect("a mesh"));
 }
 
 #[test]
@@ -227,20 +252,23 @@ fn the_same_line_twice_is_borne() {
     assert_sound(&zip(&polylines).expect("a mesh"));
 }
 
-#[test]
-fn rings_make_a_tube() {
+/// Closed circles, one a slice.
+fn rings(slices: i64) -> Polylines {
     let mut polylines = Polylines::default();
-    for slice in 0..4 {
+    for slice in 0..slices {
         let turn = |i: i32| f64::from(i) * std::f64::consts::TAU / 40.0;
         let ring = (0..40).map(|i| [9.0 * turn(i).cos(), 9.0 * turn(i).sin(), slice as f64]);
         add_line(&mut polylines, ring.collect(), slice, true);
     }
-    let mesh = zip(&polylines).expect("a mesh");
+    polylines
+}
+
+#[test]
+fn rings_make_a_tube() {
+    let mesh = zip(&rings(4)).expect("a mesh");
     assert_sound(&mesh);
     assert_eq!(mesh.triangles.len(), 2 * 40 * 3);
     let topology = phantoms::connectivity(mesh.points.len(), &mesh.triangles).topology;
-    assert_eq!(
-        (topology.components, topology.euler, topology.boundary_loops),
-        (1, 0, 2)
-    );
+    let found = (topology.components, topology.euler, topology.boundary_loops);
+    assert_eq!(found, (1, 0, 2));
 }

@@ -148,7 +148,11 @@ fn beyond(grid: &Grid, p: [f64; 3]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(400) })]
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None,
+        max_shrink_iters: 200,
+        ..ProptestConfig::with_cases(250)
+    })]
 
     #[test]
     fn scattered_voxels(case in cases(scattered, 14)) {

@@ -92,10 +92,11 @@ fn sheets_close_together_stay_apart() {
             let normal = leaning(tilt, azimuth);
             // As wide as it takes for so many voxels to fit in everywhere along an axis.
             let gap = voxels * normal.iter().map(|v| v.abs()).fold(0.0, f64::max);
+            // An odd size: no face runs through voxel centres.
             let name = format!("{tilt} degrees, azimuth {azimuth}, {voxels} voxels apart");
             (
                 name,
-                two_sheets(Frame::new([40; 3]), normal, 4.0, gap, [1, 1]),
+                two_sheets(Frame::new([41; 3]), normal, 4.0, gap, [1, 1]),
             )
         })
     });
