@@ -85,8 +85,7 @@ pub(crate) fn polylines(
         &jobs,
         |&(part, runs)| {
             let directory = &batch.directories[part];
-            let first_slice = grid.extent_start[2];
-            trace_slice(PartField { directory, field, h, first_slice }, runs)
+            trace_slice(PartField { directory, field, h }, runs)
         },
         |found: SliceLines| {
             disks += found.disks;
@@ -105,16 +104,9 @@ struct PartField<'a> {
     directory: &'a Directory,
     field: &'a RidgeField,
     h: Vec3,
-    /// Index of the volume's first slice in the image's extent.
-    first_slice: i64,
 }
 
 impl<'a> PartField<'a> {
-    /// Whether the slice has an odd index in the image's extent.
-    fn odd(&self, z: usize) -> bool {
-        (self.first_slice + z as i64) % 2 != 0
-    }
-
     fn sampler(&self, field: &'a [f32]) -> Sampler<'a> {
         Sampler {
             directory: self.directory,
@@ -203,7 +195,7 @@ fn trace_region(
     }
     // Whatever the line covers, the region shrinks, so that regions come to an end.
     slice.set(peak.map(|v| v as isize), COVERED);
-    line.and_then(|line| resample(slice, line, SPACING * unit, part.odd(slice.z)))
+    line.and_then(|line| resample(slice, line, SPACING * unit, slice.z % 2 == 1))
 }
 
 /// Unit tangent at point i.

@@ -33,21 +33,25 @@ impl View {
     /// the border: across a sheet that is flat nearby, every line's middle is on the mid-surface.
     pub fn new(distance: &Sampler, from: Vec3, normal: Vec3) -> Self {
         let look = |v: Vec3| [v, v.map(|x| -x)].map(|direction| face(distance, from, direction));
-        let along_normal = look(normal);
-        let thickness = match along_normal {
+        let ahead = look(normal);
+        let mut thickness = match ahead {
             [Reach::Face(a), Reach::Face(b)] | [Reach::Border(a), Reach::Border(b)] => a + b,
             [Reach::Face(a), Reach::Border(_)] | [Reach::Border(_), Reach::Face(a)] => 2.0 * a,
         };
+        // Rays that leave a border's corner on both sides see no face at all.
+        let nowhere = matches!(ahead, [Reach::Border(_), Reach::Border(_)]);
         let across = parallel_to_border(distance, from, normal, thickness);
         let at_border = across != normal;
-        let faces = if at_border { look(unit(across)) } else { along_normal };
-        let to_middle = match faces {
-            // A corner of the volume leaves too little of the normal to look along.
-            [Reach::Face(a), Reach::Face(b)] if length(across) > 0.5 => {
-                Some(0.5 * (a - b) * length(across))
-            }
+        let cosine = length(across);
+        // A corner of the volume leaves too little of the normal to look along.
+        let faces = match if at_border { look(unit(across)) } else { ahead } {
+            [Reach::Face(a), Reach::Face(b)] if cosine > 0.5 => Some([a * cosine, b * cosine]),
             _ => None,
         };
+        if let (true, Some([a, b])) = (nowhere, faces) {
+            thickness = a + b;
+        }
+        let to_middle = faces.map(|[a, b]| 0.5 * (a - b));
         Self {
             normal,
             thickness,
@@ -63,7 +67,7 @@ fn parallel_to_border(distance: &Sampler, p: Vec3, normal: Vec3, thickness: f64)
     let near = |a: usize| {
         let last = (distance.directory.dimensions[a] - 1) as f64 * distance.h[a];
         // The field reaches half a thickness to the face, and as far again by its Gaussian.
-        p[a].min(last - p[a]) < thickness * normal[a].abs()
+        p[a].min(last - p[a]) < thickness * normal[a].abs() + 1e-6
     };
     std::array::from_fn(|a| if near(a) { 0.0 } else { normal[a] })
 }
