@@ -2,10 +2,10 @@
 
 use phantoms::*;
 
-use crate::measure::{assert_all_match, report_of};
+use crate::measure::{assert_all_match, complete_within, report_of, Limits};
 
-/// The largest root mean square distance from the truth.
-const RMS: f64 = 0.1;
+/// What every tube 6 thick and every sheet with a hole must keep.
+const STRICT: Limits = complete_within(0.1);
 
 /// Positions within a voxel, evenly spread (the R3 sequence).
 fn within_a_voxel(count: usize) -> impl Iterator<Item = Vec3> {
@@ -39,19 +39,14 @@ fn tubes(thickness: f64, count: usize) -> impl Iterator<Item = (String, Phantom)
 
 #[test]
 fn tubes_6_thick_wherever_their_centre_is() {
-    assert_all_match(tubes(6.0, 8), RMS);
+    assert_all_match(tubes(6.0, 8), STRICT);
 }
 
 #[test]
 fn tubes_of_other_thickness() {
-    assert_all_match(
-        [3.0, 4.5, 9.0]
-            .into_iter()
-            .flat_map(|thickness| tubes(thickness, 3)),
-        RMS,
-    );
-    // Where a label 2 thick runs along an axis it is 1, 2 or 3 voxels wide by chance.
-    assert_all_match(tubes(2.0, 3), 0.15);
+    // The fewer voxels wide the label, the more its width differs from place to place.
+    let thicknesses = [2.0, 3.0, 4.5, 9.0].into_iter();
+    assert_all_match(thicknesses.flat_map(|t| tubes(t, 3)), complete_within(0.15));
 }
 
 #[test]
@@ -62,7 +57,7 @@ fn a_tight_tube() {
             tube_at(Frame::new([32, 32, 16]), offset, 9.0, 4.0),
         )
     });
-    assert_all_match(tubes, 0.15);
+    assert_all_match(tubes, complete_within(0.15));
 }
 
 fn sheet_with_a_hole(tilt: f64, azimuth: f64, thickness: f64) -> (String, Phantom) {
@@ -75,41 +70,41 @@ fn sheet_with_a_hole(tilt: f64, azimuth: f64, thickness: f64) -> (String, Phanto
     )
 }
 
-fn sheets_with_a_hole(tilts: &[f64], thickness: f64, most_rms: f64) {
+fn sheets_with_a_hole(tilts: &[f64], thickness: f64, limits: Limits) {
     let sheets = tilts.iter().flat_map(|&tilt| {
         [0.0, 17.0, 33.0, 45.0, 75.0].map(|azimuth| sheet_with_a_hole(tilt, azimuth, thickness))
     });
-    assert_all_match(sheets, most_rms);
+    assert_all_match(sheets, limits);
 }
 
 #[test]
 fn upright_sheets_2_thick_with_a_hole() {
-    sheets_with_a_hole(&[0.0], 2.0, RMS);
+    sheets_with_a_hole(&[0.0], 2.0, STRICT);
 }
 
 #[test]
 fn upright_sheets_3_thick_with_a_hole() {
-    sheets_with_a_hole(&[0.0], 3.0, RMS);
+    sheets_with_a_hole(&[0.0], 3.0, STRICT);
 }
 
 #[test]
 fn upright_sheets_6_thick_with_a_hole() {
-    sheets_with_a_hole(&[0.0], 6.0, RMS);
+    sheets_with_a_hole(&[0.0], 6.0, STRICT);
 }
 
 #[test]
 fn leaning_sheets_2_thick_with_a_hole() {
-    sheets_with_a_hole(&[10.0, 20.0, 30.0, 45.0], 2.0, RMS);
+    sheets_with_a_hole(&[10.0, 20.0, 30.0, 45.0], 2.0, STRICT);
 }
 
 #[test]
 fn leaning_sheets_3_thick_with_a_hole() {
-    sheets_with_a_hole(&[10.0, 20.0, 30.0, 45.0], 3.0, RMS);
+    sheets_with_a_hole(&[10.0, 20.0, 30.0, 45.0], 3.0, STRICT);
 }
 
 #[test]
 fn leaning_sheets_6_thick_with_a_hole() {
-    sheets_with_a_hole(&[10.0, 20.0, 30.0, 45.0], 6.0, RMS);
+    sheets_with_a_hole(&[10.0, 20.0, 30.0, 45.0], 6.0, STRICT);
 }
 
 #[test]
@@ -124,7 +119,7 @@ fn leaning_disks_with_and_without_a_hole() {
             )
         })
     });
-    assert_all_match(disks, RMS);
+    assert_all_match(disks, STRICT);
 }
 
 #[test]
@@ -133,7 +128,14 @@ fn a_disk_that_grows_thicker() {
         let phantom = wedge_disk(Frame::new([64; 3]), leaning(tilt, 33.0), 24.0, 3.0, 12.0);
         (format!("{tilt} degrees"), phantom)
     });
-    assert_all_match(disks, RMS);
+    // At its thick end a leaning disk is as thick as it is long in the last slices: no line there.
+    assert_all_match(
+        disks,
+        Limits {
+            rms: 0.1,
+            covered: 0.97,
+        },
+    );
 }
 
 #[test]
@@ -145,7 +147,7 @@ fn sheets_one_voxel_thin() {
             sheet(Frame::new([40; 3]), leaning(tilt, 33.0), 1.4, &[]),
         )
     });
-    assert_all_match(sheets, RMS);
+    assert_all_match(sheets, STRICT);
 }
 
 #[test]
@@ -159,7 +161,7 @@ fn noise_does_not_move_the_surface() {
             .chain([tube])
             .map(move |(n, phantom)| (n, phantom.with_noise(0.05, seed)))
     });
-    assert_all_match(noisy, 0.12);
+    assert_all_match(noisy, complete_within(0.12));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use midsurface::{extract, find_labels, Grid, Label, Mesh, Options, Quiet, Volume};
 use phantoms::*;
 
-use crate::measure::{assert_matches, assert_sound, extract_all, grid, mesh_of};
+use crate::measure::{assert_matches, assert_sound, complete_within, extract_all, grid, mesh_of};
 
 /// Upright sheets across x and z of a volume: label, first row and height in slices of each.
 fn sheets(dimensions: [usize; 3], sheets: &[(i64, usize, usize)]) -> Vec<i64> {
@@ -33,7 +33,7 @@ fn corners(mesh: &Mesh, label: i64) -> Vec<[[f32; 3]; 3]> {
 fn touching_labels_do_not_mix() {
     for tilt in [0.0, 25.0] {
         let phantom = two_sheets(Frame::new([40; 3]), leaning(tilt, 33.0), 4.0, 0.0, [1, 2]);
-        assert_matches(&phantom, 0.1);
+        assert_matches(&phantom, complete_within(0.1));
         let mesh = mesh_of(&phantom);
         let mut label_of_point = vec![None; mesh.points.len()];
         for (triangle, label) in mesh.triangles.iter().zip(&mesh.labels) {

@@ -14,6 +14,8 @@ fn sees_both_faces(frame: &Frame, p: Vec3, normal: Vec3, half: f64) -> bool {
 /// Asserts the thickness at all points of a plane, those at the volume's border, too.
 fn assert_thickness(phantom: &Phantom, normal: Vec3, thickness: f64, slack: f64) {
     let mesh = mesh_of(phantom);
+    let sees_one =
+        |p: &&[f32; 3]| !sees_both_faces(&phantom.frame, p.map(f64::from), normal, 0.5 * thickness);
     let errors = mesh.thickness.iter().map(|&t| f64::from(t) - thickness);
     let wrong: Vec<_> = errors
         .clone()
@@ -25,13 +27,12 @@ fn assert_thickness(phantom: &Phantom, normal: Vec3, thickness: f64, slack: f64)
     let rms = (squares / mesh.points.len() as f64).sqrt();
     assert!(
         wrong.is_empty() && rms <= 0.5 * slack,
-        "normal {normal:.2?}: {} of {} points are off by more than {slack}, the worst {worst:?}, \
-         root mean square {rms}",
+        "normal {normal:.2?}: {} of {} points are off by more than {slack}, {} of them where \
+         both faces are seen, the worst {worst:?}, root mean square {rms}",
         wrong.len(),
         mesh.points.len(),
+        wrong.iter().filter(|(_, p)| !sees_one(p)).count(),
     );
-    let sees_one =
-        |p: &&[f32; 3]| !sees_both_faces(&phantom.frame, p.map(f64::from), normal, 0.5 * thickness);
     let at_the_border = mesh.points.iter().filter(sees_one).count();
     assert!(
         at_the_border > 20,

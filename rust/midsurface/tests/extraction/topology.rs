@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use midsurface::{mid_polylines, Options, Quiet, Volume};
 use phantoms::*;
 
-use crate::measure::{assert_all_match, assert_matches, extract_all, grid, mesh_of, report_of};
+use crate::measure::{
+    assert_all_match, assert_matches, complete_within, extract_all, grid, mesh_of, report_of,
+};
 
 /// The slices that a phantom's lines lie in, and the number of lines that are not closed.
 fn slices_and_open_lines(phantom: &Phantom) -> (BTreeSet<i64>, usize) {
@@ -80,7 +82,7 @@ fn two_holes_are_two_loops_more() {
     };
     assert_matches(
         &sheet(frame, leaning(20.0, 5.0), 4.0, &[hole(-18.0), hole(18.0)]),
-        0.1,
+        complete_within(0.1),
     );
 }
 
@@ -100,7 +102,7 @@ fn sheets_close_together_stay_apart() {
             )
         })
     });
-    assert_all_match(sheets, 0.15);
+    assert_all_match(sheets, complete_within(0.2));
 }
 
 #[test]
