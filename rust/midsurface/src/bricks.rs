@@ -84,7 +84,8 @@ impl Directory {
                 *index = (self.first + self.places.len() + 1) as u32;
                 let [nx, ny, _] = self.extent;
                 let at = [cell % nx, cell / nx % ny, cell / nx / ny];
-                self.places.push(std::array::from_fn(|a| at[a] + self.low[a]));
+                self.places
+                    .push(std::array::from_fn(|a| at[a] + self.low[a]));
             }
         }
         Ok(())
@@ -98,8 +99,8 @@ impl Directory {
 
     /// Index of the brick at a place, `None` where the part has none.
     pub fn brick(&self, place: [usize; 3]) -> Option<usize> {
-        let inside = (0..3)
-            .all(|a| place[a] >= self.low[a] && place[a] - self.low[a] < self.extent[a]);
+        let inside =
+            (0..3).all(|a| place[a] >= self.low[a] && place[a] - self.low[a] < self.extent[a]);
         if !inside {
             return None;
         }
@@ -184,9 +185,12 @@ impl<'a> Batch<'a> {
 impl Batch<'_> {
     /// All bricks as index and place.
     pub fn places(&self) -> impl Iterator<Item = (usize, [usize; 3])> + '_ {
-        self.directories
-            .iter()
-            .flat_map(|d| d.places.iter().enumerate().map(|(i, &place)| (d.first + i, place)))
+        self.directories.iter().flat_map(|d| {
+            d.places
+                .iter()
+                .enumerate()
+                .map(|(i, &place)| (d.first + i, place))
+        })
     }
 }
 
@@ -199,7 +203,10 @@ pub(crate) fn voxels(
     (0..BRICK)
         .map(move |i| {
             let within = [i % EDGE, i / EDGE % EDGE, i / LAYER];
-            (brick * BRICK + i, std::array::from_fn(|a| place[a] * EDGE + within[a]))
+            (
+                brick * BRICK + i,
+                std::array::from_fn(|a| place[a] * EDGE + within[a]),
+            )
         })
         .filter(move |(_, voxel): &(usize, [usize; 3])| (0..3).all(|a| voxel[a] < dimensions[a]))
 }

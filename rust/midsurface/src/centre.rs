@@ -36,7 +36,13 @@ pub(crate) fn centre(slice: &Slice, line: &mut Trace, views: &[Option<View>]) {
         let sigma = if at_border { SIGMA_AT_BORDER } else { SIGMA };
         // In a corner of the volume no line sees both faces: what its neighbours need is taken.
         let missing = at_border && moves[i].is_none();
-        if let Some(mean) = average(&moves, i, line.closed, if missing { SIGMA } else { sigma }, missing) {
+        if let Some(mean) = average(
+            &moves,
+            i,
+            line.closed,
+            if missing { SIGMA } else { sigma },
+            missing,
+        ) {
             let length = (mean[0] * mean[0] + mean[1] * mean[1]).sqrt();
             let scale = (length - UNCERTAIN).clamp(0.0, MOST) / length.max(1e-12);
             let p = line.points[i];
@@ -48,7 +54,11 @@ pub(crate) fn centre(slice: &Slice, line: &mut Trace, views: &[Option<View>]) {
 /// The move within the slice that brings a point to the middle; normals have no sign of their own,
 /// so that moves can be averaged and offsets cannot.
 fn needed_move(slice: &Slice, view: &View, p: Point) -> Option<Point> {
-    let least = if view.at_border { LEAST_AT_BORDER } else { LEAST_THICKNESS };
+    let least = if view.at_border {
+        LEAST_AT_BORDER
+    } else {
+        LEAST_THICKNESS
+    };
     let measured = view.to_middle.filter(|_| view.thickness >= least)?;
     if slice.fraction.value(p, slice.z) < RIM {
         return None;
@@ -56,7 +66,10 @@ fn needed_move(slice: &Slice, view: &View, p: Point) -> Option<Point> {
     let [x, y, _] = view.normal;
     // A point on the volume's border stays on it.
     let on_border = slice.on_border(p);
-    let across = [if on_border[0] { 0.0 } else { x }, if on_border[1] { 0.0 } else { y }];
+    let across = [
+        if on_border[0] { 0.0 } else { x },
+        if on_border[1] { 0.0 } else { y },
+    ];
     let within = across[0] * across[0] + across[1] * across[1];
     (within > 0.05).then(|| across.map(|v| v * measured / within))
 }

@@ -5,12 +5,15 @@
 //! faces (6 neighbours), since two sheets one voxel apart touch at corners. Sheets of a single
 //! voxel are held together by corners only, so thin parts that touch are one part.
 
-use crate::execution::Execution;
 use crate::error::Result;
+use crate::execution::Execution;
 use crate::runs::Run;
 
 /// Components of fewer voxels are specks of noise, not membranes.
 pub(crate) const SPECK: usize = 30;
+
+/// So many runs tell whether a part is thin.
+const MOST_LOOKED_AT: usize = 4096;
 
 /// A set of runs of one label that one blur may see, ordered by z, y, x.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +25,11 @@ pub(crate) struct Part {
 }
 
 impl Part {
+    /// What working on the part takes, in voxels: its own, and the bricks that even a small one has.
+    pub fn cost(&self) -> usize {
+        2 * self.voxels() + 2 * crate::bricks::BRICK
+    }
+
     /// Number of labelled voxels.
     pub fn voxels(&self) -> usize {
         self.runs.iter().map(Run::length).sum()
@@ -107,7 +115,11 @@ fn parts_of_label(runs: &[Run], components: &mut u32, parts: &mut Vec<Part>) -> 
         }
         parts[*part as usize].runs.push(*run);
     }
-    parts[first..].sort_by_key(|part| part.component);
+    // What hangs on by a corner and is no larger than a speck is noise, too.
+    let mut own = parts.split_off(first);
+    own.retain(|part| part.voxels() >= SPECK);
+    own.sort_by_key(|part| part.component);
+    parts.extend(own);
     specks
 }
 
@@ -136,9 +148,11 @@ fn join_thin(runs: &[Run], corners: &[(usize, usize)], faces: &mut DisjointSets)
     }
     let row_of = RowIndex::new(runs);
     let mut thin = vec![0i64; runs.len()];
+    let mut looked_at = vec![0usize; runs.len()];
     for (i, run) in runs.iter().enumerate() {
         let root = faces.find(i);
-        if touching[root] {
+        looked_at[root] += 1;
+        if touching[root] && looked_at[root] <= MOST_LOOKED_AT {
             let is_thin = |x: &u32| run.length() == 1 || row_of.alone(runs, run, *x);
             let count = (run.start..run.end).filter(is_thin).count() as i64;
             thin[root] += 2 * count - run.length() as i64;
@@ -218,25 +232,26 @@ fn for_each_touch(runs: &[Run], mut touch: impl FnMut(usize, usize, bool)) {
         ];
         for (y, z, shares_face) in before {
             if let (Some(y), Some(z)) = (y, z) {
-                touching(runs, row.clone(), index.row(z, y), shares_face, &mut touch);
+                touching(runs, row.clone(), index.row(z, y), |a, b, overlap| {
+                    touch(a, b, shares_face && overlap);
+                });
             }
         }
     }
 }
 
-/// Walks two rows side by side.
-fn touching(
+/// Walks two rows side by side and calls `touch(a, b, overlap)` for runs that overlap or follow each
+/// other.
+pub(crate) fn touching(
     runs: &[Run],
     mut a: std::ops::Range<usize>,
     mut b: std::ops::Range<usize>,
-    shares_face: bool,
-    touch: &mut impl FnMut(usize, usize, bool),
+    mut touch: impl FnMut(usize, usize, bool),
 ) {
     while !a.is_empty() && !b.is_empty() {
         let (p, q) = (&runs[a.start], &runs[b.start]);
         if p.start <= q.end && q.start <= p.end {
-            let overlap = p.start < q.end && q.start < p.end;
-            touch(a.start, b.start, shares_face && overlap);
+            touch(a.start, b.start, p.start < q.end && q.start < p.end);
         }
         if p.end < q.end {
             a.start += 1;

@@ -39,8 +39,16 @@ pub(crate) fn distance(batch: &Batch, h: Vec3, execution: &mut Execution) -> Res
 fn write_run(directory: &Directory, run: &crate::runs::Run, h: f64, out: &mut [f32]) {
     let (start, end) = (run.start as usize, run.end as usize);
     for x in start..end {
-        let left = if start == 0 { usize::MAX } else { x + 1 - start };
-        let right = if end == directory.dimensions[0] { usize::MAX } else { end - x };
+        let left = if start == 0 {
+            usize::MAX
+        } else {
+            x + 1 - start
+        };
+        let right = if end == directory.dimensions[0] {
+            usize::MAX
+        } else {
+            end - x
+        };
         let distance = (left.min(right) as f64 * h).min(LARGEST);
         if let Some(entry) = directory.entry([x, run.y as usize, run.z as usize]) {
             out[entry] = (distance * distance) as f32;
@@ -49,7 +57,14 @@ fn write_run(directory: &Directory, run: &crate::runs::Run, h: f64, out: &mut [f
 }
 
 /// `out = min over k of input(i + k) + (k h)²` along `axis`, for the labelled voxels of a brick.
-fn lower_envelope(batch: &Batch, brick: usize, input: &[f32], axis: usize, h: f64, out: &mut [f32]) {
+fn lower_envelope(
+    batch: &Batch,
+    brick: usize,
+    input: &[f32],
+    axis: usize,
+    h: f64,
+    out: &mut [f32],
+) {
     let (directory, place) = batch.brick(brick);
     let own = &input[brick * BRICK..][..BRICK];
     for row in 0..LAYER {
@@ -57,7 +72,11 @@ fn lower_envelope(batch: &Batch, brick: usize, input: &[f32], axis: usize, h: f6
         let out = &mut out[row * EDGE..][..EDGE];
         out.copy_from_slice(own);
         let mut worst = largest(out);
-        let voxel = [place[0] * EDGE, place[1] * EDGE + row % EDGE, place[2] * EDGE + row / EDGE];
+        let voxel = [
+            place[0] * EDGE,
+            place[1] * EDGE + row % EDGE,
+            place[2] * EDGE + row / EDGE,
+        ];
         let mut k = 1;
         while worst > ((k as f64 * h) as f32).powi(2) {
             let step = ((k as f64 * h) as f32).powi(2);
@@ -67,7 +86,9 @@ fn lower_envelope(batch: &Batch, brick: usize, input: &[f32], axis: usize, h: f6
                 if at[axis] < 0 || at[axis] >= directory.dimensions[axis] as isize {
                     continue;
                 }
-                let other = directory.entry_at(at).map_or(&[0.0; EDGE][..], |e| &input[e..][..EDGE]);
+                let other = directory
+                    .entry_at(at)
+                    .map_or(&[0.0; EDGE][..], |e| &input[e..][..EDGE]);
                 for (out, other) in out.iter_mut().zip(other) {
                     *out = out.min(other + step);
                 }

@@ -13,8 +13,7 @@ pub(crate) fn eigenvalues([xx, yy, zz, xy, xz, yz]: Symmetric) -> Vec3 {
     if p <= f64::MIN_POSITIVE {
         return [mean; 3];
     }
-    let determinant =
-        a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
+    let determinant = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
     let angle = (determinant / (2.0 * p * p * p)).clamp(-1.0, 1.0).acos() / 3.0;
     let turn = 2.0 * std::f64::consts::FRAC_PI_3;
     let largest = mean + 2.0 * p * angle.cos();
@@ -25,9 +24,19 @@ pub(crate) fn eigenvalues([xx, yy, zz, xy, xz, yz]: Symmetric) -> Vec3 {
 /// The unit eigenvector of a simple eigenvalue: what is across the rows of A − λ I. Zero where the
 /// eigenvalue is not simple.
 pub(crate) fn eigenvector([xx, yy, zz, xy, xz, yz]: Symmetric, value: f64) -> Vec3 {
-    let rows = [[xx - value, xy, xz], [xy, yy - value, yz], [xz, yz, zz - value]];
-    let candidates = [cross(rows[0], rows[1]), cross(rows[0], rows[2]), cross(rows[1], rows[2])];
-    let longest = candidates.into_iter().max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
+    let rows = [
+        [xx - value, xy, xz],
+        [xy, yy - value, yz],
+        [xz, yz, zz - value],
+    ];
+    let candidates = [
+        cross(rows[0], rows[1]),
+        cross(rows[0], rows[2]),
+        cross(rows[1], rows[2]),
+    ];
+    let longest = candidates
+        .into_iter()
+        .max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
     unit(longest.unwrap_or_default())
 }
 

@@ -4,7 +4,9 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// The buffer is not as long as the dimensions say.
-    #[error("the volume is said to have {dimensions:?} voxels, but its array holds {length} values")]
+    #[error(
+        "the volume is said to have {dimensions:?} voxels, but its array holds {length} values"
+    )]
     BufferLength {
         /// Claimed number of voxels along x, y, z.
         dimensions: [usize; 3],

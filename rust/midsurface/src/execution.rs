@@ -35,6 +35,9 @@ impl Observer for Quiet {
 /// How long a batch should take, seconds: short enough to report and to cancel between them.
 const BATCH_SECONDS: f64 = 0.05;
 
+/// The most items in a batch.
+const MOST_ITEMS: usize = 4096;
+
 /// A pool and an observer for one run.
 pub(crate) struct Execution<'a> {
     pool: ThreadPool,
@@ -137,7 +140,8 @@ impl<'a> Execution<'a> {
             work(&self.pool, start..end)?;
             let seconds = clock.elapsed().as_secs_f64();
             if seconds < BATCH_SECONDS / 2.0 {
-                size *= 2;
+                // Cheap items may be followed by costly ones.
+                size = (2 * size).min(MOST_ITEMS);
             } else if seconds > BATCH_SECONDS {
                 size = (size / 2).max(threads);
             }

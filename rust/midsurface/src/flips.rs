@@ -76,22 +76,28 @@ fn try_flip(
 ) -> bool {
     let f = twins[e as usize];
     let (a, b) = ends(triangles, e);
-    let (c, d) = (ends(triangles, next(next(e))).0, ends(triangles, next(next(f))).0);
+    let (c, d) = (
+        ends(triangles, next(next(e))).0,
+        ends(triangles, next(next(f))).0,
+    );
     let before: i32 = [a, b, c, d].iter().map(|&p| valence.excess(p, 0)).sum();
-    let after = valence.excess(a, -1)
-        + valence.excess(b, -1)
-        + valence.excess(c, 1)
-        + valence.excess(d, 1);
+    let after =
+        valence.excess(a, -1) + valence.excess(b, -1) + valence.excess(c, 1) + valence.excess(d, 1);
     let least = |p: u32| if valence.boundary[p as usize] { 2 } else { 3 };
     let coincide = squared_distance(points[c as usize], points[d as usize]) == 0.0;
-    if after > before || coincide || [a, b].iter().any(|&p| valence.count[p as usize] <= least(p)) {
+    if after > before
+        || coincide
+        || [a, b]
+            .iter()
+            .any(|&p| valence.count[p as usize] <= least(p))
+    {
         return false;
     }
     let [a3, b3, c3, d3] = [a, b, c, d].map(|p| points[p as usize]);
     let old = sharpest(a3, b3, c3).max(sharpest(b3, a3, d3));
     let new = sharpest(c3, a3, d3).max(sharpest(d3, b3, c3));
     let opens = new < old - 1e-6;
-    if (after == before && !opens) || (new > SHARP && !opens) {
+    if !opens && (after == before || new > SHARP) {
         return false;
     }
     if !is_flat(a3, b3, c3, d3) || joined(c, d, next(next(e)), triangles, twins) {
@@ -115,8 +121,7 @@ fn is_flat(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> bool {
     let normal = |p: Vec3, q: Vec3, r: Vec3| unit(cross(sub(q, p), sub(r, p)));
     let old = [normal(a, b, c), normal(b, a, d)];
     let new = [normal(c, a, d), normal(d, b, c)];
-    dot(old[0], old[1]) > FLAT
-        && old.iter().all(|o| new.iter().all(|n| dot(*o, *n) > FLAT))
+    dot(old[0], old[1]) > FLAT && old.iter().all(|o| new.iter().all(|n| dot(*o, *n) > FLAT))
 }
 
 /// Whether points c and d share an edge; `around` is a half-edge that leaves c.

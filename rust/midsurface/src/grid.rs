@@ -78,9 +78,8 @@ impl Grid {
 
     /// World coordinates of a point given as a continuous voxel index.
     pub fn world(&self, voxel: Vec3) -> Vec3 {
-        let local: Vec3 = std::array::from_fn(|a| {
-            self.spacing[a] * (self.extent_start[a] as f64 + voxel[a])
-        });
+        let local: Vec3 =
+            std::array::from_fn(|a| self.spacing[a] * (self.extent_start[a] as f64 + voxel[a]));
         std::array::from_fn(|r| self.origin[r] + dot(self.direction[r], local))
     }
 }

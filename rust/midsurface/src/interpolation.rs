@@ -40,7 +40,9 @@ impl Sampler<'_> {
                 return 2.0 * self.coefficient(border) - self.coefficient(mirrored);
             }
         }
-        self.directory.entry_at(voxel).map_or(0.0, |entry| self.field[entry].into())
+        self.directory
+            .entry_at(voxel)
+            .map_or(0.0, |entry| self.field[entry].into())
     }
 
     /// The 4 × 4 coefficients around (x, y) in slice z, and the fraction within the pixel.

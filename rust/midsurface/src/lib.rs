@@ -56,8 +56,8 @@ use ndarray::ArrayViewMut3;
 
 use bricks::Batch;
 use components::{parts, Part};
-use execution::Execution;
 pub use error::{Error, Result};
+use execution::Execution;
 pub use execution::{Observer, Quiet};
 pub use grid::{Grid, Vec3};
 pub use mesh::{InvariantViolation, Mesh};
@@ -128,17 +128,24 @@ pub fn ridge_field(
 ) -> Result<()> {
     let mut execution = Execution::new(options.threads, observer)?;
     let unit = volume.grid.unit() as f32;
-    for_each_batch(volume, options, &mut execution, 1.0, "Writing the fields", |batch, field, _| {
-        for (brick, place) in batch.places() {
-            for (entry, [x, y, z]) in bricks::voxels(brick, place, volume.grid.dimensions) {
-                // Margins of neighbouring parts overlap: the stronger field wins.
-                let (d, r) = (&mut distance[[z, y, x]], &mut ridge[[z, y, x]]);
-                *d = d.max(field.distance[entry] * unit);
-                *r = r.max(field.ridge[entry] * unit);
+    for_each_batch(
+        volume,
+        options,
+        &mut execution,
+        1.0,
+        "Writing the fields",
+        |batch, field, _| {
+            for (brick, place) in batch.places() {
+                for (entry, [x, y, z]) in bricks::voxels(brick, place, volume.grid.dimensions) {
+                    // Margins of neighbouring parts overlap: the stronger field wins.
+                    let (d, r) = (&mut distance[[z, y, x]], &mut ridge[[z, y, x]]);
+                    *d = d.max(field.distance[entry] * unit);
+                    *r = r.max(field.ridge[entry] * unit);
+                }
             }
-        }
-        Ok(())
-    })
+            Ok(())
+        },
+    )
 }
 
 /// The mid-polylines of every slice.
@@ -176,14 +183,21 @@ fn trace_polylines(
 ) -> Result<Polylines> {
     let mut polylines = Polylines::default();
     let mut disks = 0;
-    for_each_batch(volume, options, execution, until, "Tracing mid-polylines", |batch, field, execution| {
-        disks += polylines::polylines(batch, field, &volume.grid, &mut polylines, execution)?;
-        Ok(())
-    })?;
+    for_each_batch(
+        volume,
+        options,
+        execution,
+        until,
+        "Tracing mid-polylines",
+        |batch, field, execution| {
+            disks += polylines::polylines(batch, field, &volume.grid, &mut polylines, execution)?;
+            Ok(())
+        },
+    )?;
     if disks > 0 {
         execution.warning(&format!(
             "{disks} regions of single slices are disks, where the membrane lies flat in the \
-             slices, as at the caps of a vesicle: the surface has a gap there"
+             slices along z, as at the caps of a vesicle: the surface has a gap there"
         ));
     }
     Ok(polylines)
@@ -201,12 +215,32 @@ fn zip(polylines: &Polylines, execution: &mut Execution, from: f64) -> Result<Me
              them in single slices only",
         );
     }
+    warn_if_far(&mesh, execution);
     execution.report(1.0)?;
     Ok(mesh)
 }
 
-/// Voxels of the parts that are worked on at once; a larger component is a batch of its own.
-const BATCH_VOXELS: usize = 300_000;
+/// Warns where the points' 32-bit coordinates are too coarse for the mesh: far from the origin.
+fn warn_if_far(mesh: &Mesh, execution: &mut Execution) {
+    let Some(triangle) = mesh.triangles.first() else {
+        return;
+    };
+    let [a, b, _] = triangle.map(|p| mesh.points[p as usize].map(f64::from));
+    let farthest = mesh
+        .points
+        .iter()
+        .flatten()
+        .fold(0.0f32, |far, v| far.max(v.abs()));
+    if f64::from(farthest * f32::EPSILON) > 0.01 * grid::length(grid::sub(a, b)) {
+        execution.warning(
+            "the volume lies so far from the origin that the points' 32-bit coordinates are \
+             rounded visibly: move its origin nearer to 0",
+        );
+    }
+}
+
+/// Cost of the parts that are worked on at once; a larger component is a batch of its own.
+const BATCH_COST: usize = 600_000;
 
 /// Scans the volume and hands its parts with their ridge fields to `work`, in batches of whole
 /// components.
@@ -240,15 +274,15 @@ fn for_each_batch(
 /// Cuts the parts, which are ordered by component, into batches of whole components.
 fn batches(parts: &[Part]) -> Vec<&[Part]> {
     let mut batches = Vec::new();
-    let (mut start, mut end, mut voxels) = (0, 0, 0);
+    let (mut start, mut end, mut cost) = (0, 0, 0);
     for component in parts.chunk_by(|a, b| a.component == b.component) {
-        let size: usize = component.iter().map(Part::voxels).sum();
-        if voxels > 0 && voxels + size > BATCH_VOXELS {
+        let size: usize = component.iter().map(Part::cost).sum();
+        if cost > 0 && cost + size > BATCH_COST {
             batches.push(&parts[start..end]);
-            (start, voxels) = (end, 0);
+            (start, cost) = (end, 0);
         }
         end += component.len();
-        voxels += size;
+        cost += size;
     }
     if end > start {
         batches.push(&parts[start..end]);
@@ -258,7 +292,8 @@ fn batches(parts: &[Part]) -> Vec<&[Part]> {
 
 /// The parts of the wanted labels; tells the user what is missing or left out.
 fn read_parts(volume: &Volume, options: &Options, execution: &mut Execution) -> Result<Vec<Part>> {
-    let wanted: Option<BTreeSet<i64>> = options.labels.as_ref().map(|l| l.iter().copied().collect());
+    let wanted: Option<BTreeSet<i64>> =
+        options.labels.as_ref().map(|l| l.iter().copied().collect());
     let is_wanted = |label: i64| wanted.as_ref().is_none_or(|wanted| wanted.contains(&label));
     let scan = runs::scan(volume, execution, is_wanted)?;
     report_labels(wanted.as_ref(), &scan.labels, execution)?;
@@ -273,9 +308,8 @@ fn read_parts(volume: &Volume, options: &Options, execution: &mut Execution) -> 
     let found = parts.len();
     parts.retain(|part| part.voxels() < volume_size);
     if parts.len() < found {
-        execution.warning(
-            "one label fills the whole volume: it has no faces, and so no mid-surface",
-        );
+        execution
+            .warning("one label fills the whole volume: it has no faces, and so no mid-surface");
     }
     Ok(parts)
 }

@@ -1,11 +1,11 @@
 //! The result: a triangle mesh, and the invariants it keeps.
 
+use crate::components::DisjointSets;
 use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::flips::flip_edges;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::{Edges, NONE};
-use crate::components::DisjointSets;
 use crate::manifold::{make_manifold, Surface};
 use crate::polylines::Polylines;
 use crate::zipper::Zipped;
@@ -87,7 +87,11 @@ impl Mesh {
         let line = |t: &[u32; 3]| &polylines.lines[line_of[surface.source[t[0] as usize] as usize]];
         let mut mesh = Self {
             labels: surface.triangles.iter().map(|t| line(t).label).collect(),
-            components: surface.triangles.iter().map(|t| line(t).component).collect(),
+            components: surface
+                .triangles
+                .iter()
+                .map(|t| line(t).component)
+                .collect(),
             ..Self::default()
         };
         let normals = normals(&surface.points, &surface.triangles);
@@ -101,7 +105,8 @@ impl Mesh {
                     number[p] = mesh.points.len() as u32 + 1;
                     mesh.points.push(surface.points[p].map(|v| v as f32));
                     mesh.normals.push(normals[p].map(|v| v as f32));
-                    mesh.thickness.push(polylines.thickness[surface.source[p] as usize]);
+                    mesh.thickness
+                        .push(polylines.thickness[surface.source[p] as usize]);
                 }
                 number[p] - 1
             }));
@@ -160,16 +165,22 @@ impl Mesh {
         let mut used = vec![false; self.points.len()];
         for (i, triangle) in self.triangles.iter().enumerate() {
             for &p in triangle {
-                *used.get_mut(p as usize).ok_or(InvariantViolation::PointIndex(i))? = true;
+                *used
+                    .get_mut(p as usize)
+                    .ok_or(InvariantViolation::PointIndex(i))? = true;
             }
             let [a, b, c] = triangle.map(|p| self.points[p as usize].map(f64::from));
             let area = length(cross(sub(b, a), sub(c, a)));
-            let longest = length(sub(b, a)).max(length(sub(c, b))).max(length(sub(a, c)));
+            let longest = length(sub(b, a))
+                .max(length(sub(c, b)))
+                .max(length(sub(a, c)));
             if area.is_nan() || area <= 1e-9 * longest * longest {
                 return Err(InvariantViolation::Degenerate(i));
             }
         }
-        used.iter().position(|u| !u).map_or(Ok(()), |i| Err(InvariantViolation::Unused(i)))
+        used.iter()
+            .position(|u| !u)
+            .map_or(Ok(()), |i| Err(InvariantViolation::Unused(i)))
     }
 
     /// Every point's corners must hang together through shared edges.
@@ -245,7 +256,9 @@ fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
         let [a, b, c] = t.map(|p| points[p as usize]);
         let normal = unit(cross(sub(b, a), sub(c, a)));
         for (k, (p, q, r)) in [(a, b, c), (b, c, a), (c, a, b)].into_iter().enumerate() {
-            let angle = dot(unit(sub(q, p)), unit(sub(r, p))).clamp(-1.0, 1.0).acos();
+            let angle = dot(unit(sub(q, p)), unit(sub(r, p)))
+                .clamp(-1.0, 1.0)
+                .acos();
             let sum = &mut normals[t[k] as usize];
             *sum = along(*sum, angle, normal);
         }

@@ -7,17 +7,17 @@
 //! counted, and the caller says so.
 
 use crate::bricks::{Batch, Directory};
+use crate::centre::centre;
 use crate::components::Part;
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::{Grid, Vec3};
 use crate::interpolation::Sampler;
+use crate::resample::{arc_length, distance, resample};
 use crate::ridge::RidgeField;
 use crate::runs::Run;
 use crate::slice::{Pixel, Point, Slice, COVERED};
-use crate::centre::centre;
 use crate::thickness::View;
-use crate::resample::{arc_length, distance, resample};
 use crate::trace::{trace, Trace};
 
 /// Distance of neighbouring points on a line, in units of the finest spacing (the paper's √2).
@@ -26,6 +26,9 @@ const SPACING: f64 = std::f64::consts::SQRT_2;
 const DISK: f64 = 1.3;
 /// How often a region that no line covers is tried from another start.
 const ATTEMPTS: usize = 3;
+/// Quantiles of the ridge field at which the attempts start, in regions of enough pixels.
+const SEEDS: [f64; ATTEMPTS] = [1.0, 0.9, 0.75];
+const LEAST_RANKED: usize = 64;
 /// A region of fewer pixels is the rim of a covered one.
 const SMALLEST_REGION: usize = 4;
 
@@ -77,7 +80,11 @@ pub(crate) fn polylines(
         .parts
         .iter()
         .enumerate()
-        .flat_map(|(i, part)| part.runs.chunk_by(|a, b| a.z == b.z).map(move |runs| (i, runs)))
+        .flat_map(|(i, part)| {
+            part.runs
+                .chunk_by(|a, b| a.z == b.z)
+                .map(move |runs| (i, runs))
+        })
         .collect();
     let mut disks = 0;
     let mut job = jobs.iter();
@@ -85,7 +92,14 @@ pub(crate) fn polylines(
         &jobs,
         |&(part, runs)| {
             let directory = &batch.directories[part];
-            trace_slice(PartField { directory, field, h }, runs)
+            trace_slice(
+                PartField {
+                    directory,
+                    field,
+                    h,
+                },
+                runs,
+            )
         },
         |found: SliceLines| {
             disks += found.disks;
@@ -133,7 +147,7 @@ fn trace_slice(part: PartField, runs: &[Run]) -> SliceLines {
         let mut regions = vec![(pixels, 0)];
         let mut primary = true;
         while let Some((pixels, attempt)) = regions.pop() {
-            let line = trace_region(part, &mut slice, &pixels, component, primary);
+            let line = trace_region(part, &mut slice, &pixels, component, primary, attempt);
             primary &= line.is_none();
             let attempt = if line.is_some() { 0 } else { attempt + 1 };
             if let Some(line) = line {
@@ -162,7 +176,9 @@ fn finish(part: PartField, slice: &Slice, mut line: Trace) -> (Trace, Vec<f64>) 
             before.or_else(|| (i + k < views.len()).then(|| known(i + k)).flatten())
         })
     };
-    let thickness = (0..views.len()).map(|i| nearest(i).unwrap_or(0.0)).collect();
+    let thickness = (0..views.len())
+        .map(|i| nearest(i).unwrap_or(0.0))
+        .collect();
     (line, thickness)
 }
 
@@ -174,28 +190,51 @@ fn trace_region(
     pixels: &[Pixel],
     component: u32,
     primary: bool,
+    attempt: usize,
 ) -> Option<Trace> {
     let unit = slice.h()[0].min(slice.h()[1]);
-    let peak = pixels
-        .iter()
-        .map(|&p| (part.field.ridge[part.directory.entry([p[0], p[1], slice.z]).unwrap_or(0)], p))
-        .reduce(|best, next| if next.0 > best.0 { next } else { best })?
-        .1;
-    let start = slice.centre(peak);
+    let seed = seed(part, slice.z, pixels, attempt);
+    let start = slice.centre(seed);
     let limit = 4 * pixels.len() + 64;
-    let line = trace(slice, start, component, limit).filter(|line| {
-        let length = arc_length(line);
-        let area = pixels.len() as f64 * slice.h()[0] * slice.h()[1];
-        let least = if primary { 0.3 * unit } else { 2.0 * SPACING * unit };
-        length > least && (length * length > DISK * area || area < 12.0 * unit * unit)
-    });
+    let line = trace(slice, start, component, limit)
+        .map(|line| (half_widths(slice, &line, component), line))
+        .filter(|(widths, line)| {
+            let length = arc_length(line);
+            // A disk's line is short against what lies beside it. Branches do not count.
+            let beside = length * 2.0 * widths.iter().sum::<f64>() / widths.len() as f64;
+            let area = beside.min(pixels.len() as f64 * slice.h()[0] * slice.h()[1]);
+            let least = if primary {
+                0.3 * unit
+            } else {
+                2.0 * SPACING * unit
+            };
+            length > least && (length * length > DISK * area || area < 12.0 * unit * unit)
+        });
     match &line {
-        Some(line) => cover_line(slice, line, component),
+        Some((widths, line)) => cover_line(slice, line, widths, component),
         None => slice.cover(start, 1.5 * unit, component),
     }
     // Whatever the line covers, the region shrinks, so that regions come to an end.
-    slice.set(peak.map(|v| v as isize), COVERED);
-    line.and_then(|line| resample(slice, line, SPACING * unit, slice.z % 2 == 1))
+    slice.set(seed.map(|v| v as isize), COVERED);
+    line.and_then(|(_, line)| resample(slice, line, SPACING * unit, slice.z % 2 == 1))
+}
+
+/// Where a region's line starts: at the peak of the ridge field, and where that failed, lower: in a
+/// network of sheets the peak is a crossing, which has no direction.
+fn seed(part: PartField, z: usize, pixels: &[Pixel], attempt: usize) -> Pixel {
+    let height = |p: &Pixel| {
+        let entry = part.directory.entry([p[0], p[1], z]);
+        entry.map_or(0.0, |entry| part.field.ridge[entry])
+    };
+    let mut ranked: Vec<(f32, Pixel)> = pixels.iter().map(|p| (height(p), *p)).collect();
+    let quantile = if pixels.len() < LEAST_RANKED {
+        1.0
+    } else {
+        SEEDS[attempt.min(ATTEMPTS - 1)]
+    };
+    let rank = ((ranked.len() - 1) as f64 * quantile) as usize;
+    let by_height = |a: &(f32, Pixel), b: &(f32, Pixel)| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1));
+    ranked.select_nth_unstable_by(rank, by_height).1 .1
 }
 
 /// Unit tangent at point i.
@@ -213,20 +252,24 @@ fn tangent(line: &Trace, i: usize) -> Point {
 
 /// Covers the pixels between both faces of the label along a line. The width is measured across
 /// the line, and bounded by its neighbours', so that the line does not cover a branch.
-fn cover_line(slice: &mut Slice, line: &Trace, component: u32) {
+fn cover_line(slice: &mut Slice, line: &Trace, widths: &[f64], component: u32) {
     const WINDOW: usize = 8;
     let unit = slice.h()[0].min(slice.h()[1]);
-    let widths: Vec<f64> = (0..line.points.len())
-        .map(|i| half_width(slice, line.points[i], tangent(line, i), component))
-        .collect();
     // A trace's points are 0.7 apart, so that every other one is near enough to all pixels.
     for (i, &p) in line.points.iter().enumerate().step_by(2) {
-        let mut near = widths[i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(widths.len())].to_vec();
+        let mut near =
+            widths[i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(widths.len())].to_vec();
         near.sort_by(f64::total_cmp);
         let typical = near[near.len() / 2];
         let radius = widths[i].min(1.3 * typical) + 0.75 * unit;
         slice.cover(p, radius, component);
     }
+}
+
+/// Half widths of the label at the points of a line.
+fn half_widths(slice: &Slice, line: &Trace, component: u32) -> Vec<f64> {
+    let width = |i| half_width(slice, line.points[i], tangent(line, i), component);
+    (0..line.points.len()).map(width).collect()
 }
 
 /// Distance from a point to the farther face of the label, across the line.

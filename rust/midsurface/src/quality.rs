@@ -60,7 +60,10 @@ impl Mesh {
             }
         }
         let interior = boundary.iter().filter(|b| !**b).count();
-        let good = valence.iter().zip(&boundary).filter(|(v, b)| !**b && (5..=7).contains(*v));
+        let good = valence
+            .iter()
+            .zip(&boundary)
+            .filter(|(v, b)| !**b && (5..=7).contains(*v));
         good.count() as f64 / interior.max(1) as f64
     }
 }
@@ -71,9 +74,16 @@ fn shape([a, b, c]: [Vec3; 3]) -> (f64, f64, [f64; 3]) {
     let sides = [length(sub(c, b)), length(sub(a, c)), length(sub(b, a))];
     let half = 0.5 * sides.iter().sum::<f64>();
     let longest = sides.iter().copied().fold(0.0, f64::max);
-    let q = if longest > 0.0 { 6.0 / 3f64.sqrt() * area / (half * longest) } else { 0.0 };
+    let q = if longest > 0.0 {
+        6.0 / 3f64.sqrt() * area / (half * longest)
+    } else {
+        0.0
+    };
     let angle = |p: Vec3, q: Vec3, r: Vec3| {
-        dot(unit(sub(q, p)), unit(sub(r, p))).clamp(-1.0, 1.0).acos().to_degrees()
+        dot(unit(sub(q, p)), unit(sub(r, p)))
+            .clamp(-1.0, 1.0)
+            .acos()
+            .to_degrees()
     };
     (area, q, [angle(a, b, c), angle(b, c, a), angle(c, a, b)])
 }

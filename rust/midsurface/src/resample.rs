@@ -36,12 +36,18 @@ pub(crate) fn resample(slice: &Slice, line: Trace, spacing: f64, odd: bool) -> O
         return None;
     }
     let best = length / spacing;
-    let count = if line.closed { edge_count(best).max(3) } else { (best.round() as usize).max(1) };
+    let count = if line.closed {
+        edge_count(best).max(3)
+    } else {
+        (best.round() as usize).max(1)
+    };
     let edge = length / count as f64;
     let shift = f64::from(u8::from(odd)) * 0.5;
     let along: Vec<f64> = if line.closed {
         let anchor = anchor(&line.points);
-        (0..count).map(|k| (anchor + (k as f64 + shift) * edge).rem_euclid(length)).collect()
+        (0..count)
+            .map(|k| (anchor + (k as f64 + shift) * edge).rem_euclid(length))
+            .collect()
     } else if odd && count >= LEAST_SHIFTED {
         let inner = (0..count).map(|k| (k as f64 + shift) * edge);
         std::iter::once(0.0).chain(inner).chain([length]).collect()
@@ -53,7 +59,8 @@ pub(crate) fn resample(slice: &Slice, line: Trace, spacing: f64, odd: bool) -> O
     let points = along.iter().enumerate().map(|(k, &s)| {
         let p = curve.at(s);
         let end = !line.closed && (k == 0 || k == last);
-        if end { p } else { crest(slice, p).unwrap_or(p) }
+        let on_crest = crest(slice, p).filter(|q| !end && distance(p, *q) < 0.5 * spacing);
+        slice.clamp(on_crest.unwrap_or(p))
     });
     Some(Trace {
         points: points.collect(),
@@ -74,12 +81,19 @@ fn anchor(points: &[Point]) -> f64 {
     let origin = points[0];
     let (mut area, mut moment) = (0.0, 0.0);
     for (p, q) in edges() {
-        let (p, q) = ([p[0] - origin[0], p[1] - origin[1]], [q[0] - origin[0], q[1] - origin[1]]);
+        let (p, q) = (
+            [p[0] - origin[0], p[1] - origin[1]],
+            [q[0] - origin[0], q[1] - origin[1]],
+        );
         let cross = p[0] * q[1] - p[1] * q[0];
         area += cross;
         moment += cross * (p[1] + q[1]) / 3.0;
     }
-    let level = if area.abs() > 1e-9 { origin[1] + moment / area } else { origin[1] };
+    let level = if area.abs() > 1e-9 {
+        origin[1] + moment / area
+    } else {
+        origin[1]
+    };
     let (mut passed, mut best) = (0.0, (f64::NEG_INFINITY, 0.0));
     for (p, q) in edges() {
         if (p[1] <= level) != (q[1] <= level) {
@@ -115,7 +129,10 @@ impl Curve {
 
     /// The point at arc length s.
     fn at(&self, s: f64) -> Point {
-        let i = self.passed.partition_point(|&passed| passed < s).clamp(1, self.corners.len() - 1);
+        let i = self
+            .passed
+            .partition_point(|&passed| passed < s)
+            .clamp(1, self.corners.len() - 1);
         let (a, b) = (self.corners[i - 1], self.corners[i]);
         let span = (self.passed[i] - self.passed[i - 1]).max(1e-12);
         let t = ((s - self.passed[i - 1]) / span).clamp(0.0, 1.0);

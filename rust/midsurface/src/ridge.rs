@@ -49,6 +49,7 @@ pub(crate) fn ridge_field<'a>(
     let batch = Batch::new(parts, dimensions)?;
     let distance = distance(&batch, h, execution)?;
     let scales = scales(&batch, &distance);
+    warn_if_thick(parts, &scales, execution);
     let reach = |part: usize| 2.0 * scales[part] + 1.0;
     let kernels: Vec<[Kernel; 3]> = (0..parts.len())
         .map(|part| Kernel::axes(scales[part], reach(part), h, &batch.directories[part]))
@@ -66,9 +67,20 @@ pub(crate) fn ridge_field<'a>(
         }
     })?;
     drop(thick);
-    let mut sheets = sheets(&batch, &scales, &distance, &ridge, h, &mut scratch, execution)?;
+    let mut sheets = sheets(
+        &batch,
+        &scales,
+        &distance,
+        &ridge,
+        h,
+        &mut scratch,
+        execution,
+    )?;
     drop(scratch);
-    let variance: Vec<f64> = kernels.iter().map(|kernels| kernels[0].variance(h[0])).collect();
+    let variance: Vec<f64> = kernels
+        .iter()
+        .map(|kernels| kernels[0].variance(h[0]))
+        .collect();
     unshrink(&batch, &variance, &mut sheets, h, execution)?;
     let field = RidgeField {
         distance,
@@ -77,6 +89,25 @@ pub(crate) fn ridge_field<'a>(
         sheets,
     };
     Ok((batch, field))
+}
+
+/// Tells of components for which σ had to be bounded.
+fn warn_if_thick(parts: &[Part], scales: &[f64], execution: &mut Execution) {
+    let thick = parts
+        .iter()
+        .zip(scales)
+        .filter(|(_, scale)| **scale == LARGEST_SCALE);
+    let mut thick: Vec<(i64, u32)> = thick
+        .map(|(part, _)| (part.label, part.component))
+        .collect();
+    thick.dedup();
+    for (label, component) in thick {
+        execution.warning(&format!(
+            "component {component} of label {label} is more than {} voxels thick: no thin \
+             membrane, so that its mid-surface means little",
+            4.0 * LARGEST_SCALE
+        ));
+    }
 }
 
 fn copy(field: &[f32]) -> Result<Vec<f32>> {

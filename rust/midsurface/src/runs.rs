@@ -88,7 +88,11 @@ pub(crate) fn scan(
     Ok(scan)
 }
 
-fn read_slice(scalars: &Scalars, z: usize, wanted: &(impl Fn(i64) -> bool + Sync)) -> Result<Slice> {
+fn read_slice(
+    scalars: &Scalars,
+    z: usize,
+    wanted: &(impl Fn(i64) -> bool + Sync),
+) -> Result<Slice> {
     macro_rules! typed {
         ($($variant:ident),*) => {
             match scalars { $(Scalars::$variant(view) => read_typed(view, z, wanted)),* }
@@ -104,7 +108,11 @@ fn read_typed<T: Label>(
 ) -> Result<Slice> {
     let mut slice = Slice::default();
     let mut latest = (0, false);
-    for (y, row) in view.index_axis(ndarray::Axis(0), z).outer_iter().enumerate() {
+    for (y, row) in view
+        .index_axis(ndarray::Axis(0), z)
+        .outer_iter()
+        .enumerate()
+    {
         let row = row.to_slice().unwrap_or(&[]);
         let mut start = skip_background(row, 0);
         while start < row.len() {
@@ -126,7 +134,10 @@ fn read_typed<T: Label>(
             }
             if latest.1 {
                 let bytes = std::mem::size_of::<Run>();
-                slice.runs.try_reserve(1).map_err(|_| Error::OutOfMemory(bytes))?;
+                slice
+                    .runs
+                    .try_reserve(1)
+                    .map_err(|_| Error::OutOfMemory(bytes))?;
                 slice.runs.push(Run {
                     label,
                     z: z as u32,

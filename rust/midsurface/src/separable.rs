@@ -43,7 +43,8 @@ impl Kernel {
 
     /// Variance of the kernel in work units squared, h being the spacing it was made for.
     pub fn variance(&self, h: f64) -> f64 {
-        let square = |(i, w): (usize, &f32)| f64::from(*w) * (i as f64 - self.radius as f64).powi(2);
+        let square =
+            |(i, w): (usize, &f32)| f64::from(*w) * (i as f64 - self.radius as f64).powi(2);
         h * h * self.weights[0].iter().enumerate().map(square).sum::<f64>()
     }
 
@@ -71,7 +72,10 @@ fn weights(sigma: f64, radius: usize, room: [usize; 2]) -> Vec<f32> {
     };
     let raw: Vec<f64> = (0..=2 * radius).map(gaussian).collect();
     let moment = |power: i32| -> f64 {
-        raw.iter().enumerate().map(|(i, w)| w * offset(i).powi(power)).sum()
+        raw.iter()
+            .enumerate()
+            .map(|(i, w)| w * offset(i).powi(power))
+            .sum()
     };
     let (m0, m1, m2) = (moment(0), moment(1), moment(2));
     let determinant = m0 * m2 - m1 * m1;
@@ -146,7 +150,10 @@ pub(crate) fn local_maximum(
 fn convolve_row(row: &[f32], weights: &[&[f32]; EDGE], out: &mut [f32]) {
     let first = weights[0];
     // Away from the borders all eight kernels are one, and the sums run side by side.
-    if weights.iter().all(|w| std::ptr::eq(w.as_ptr(), first.as_ptr())) {
+    if weights
+        .iter()
+        .all(|w| std::ptr::eq(w.as_ptr(), first.as_ptr()))
+    {
         for (k, &w) in first.iter().enumerate() {
             for (out, v) in out.iter_mut().zip(&row[k..k + EDGE]) {
                 *out += w * v;

@@ -93,8 +93,7 @@ pub(crate) fn sheets(
         for (i, out) in out.iter_mut().enumerate() {
             let entry = brick * BRICK + i;
             if distance[entry] > 0.0 || near.any_near(i) {
-                let [xx, yy, xy, xz, yz] =
-                    std::array::from_fn(|k| f64::from(tensor[k][entry]));
+                let [xx, yy, xy, xz, yz] = std::array::from_fn(|k| f64::from(tensor[k][entry]));
                 let tensor = [xx, yy, 0.0, xy, xz, yz];
                 *out = sheet(tensor, block.value(i), block.derivatives(i, h), sigma);
             }
@@ -129,13 +128,7 @@ pub(crate) fn unshrink(
 }
 
 /// div n at voxel i of the brick at `place`; differences with unknown neighbours are left out.
-fn divergence(
-    directory: &Directory,
-    brick: usize,
-    i: usize,
-    sheets: &[Sheet],
-    h: Vec3,
-) -> f64 {
+fn divergence(directory: &Directory, brick: usize, i: usize, sheets: &[Sheet], h: Vec3) -> f64 {
     let voxel = [i % EDGE, i / EDGE % EDGE, i / LAYER].map(|v| v as isize);
     let place = directory.places[brick - directory.first];
     let known = |at: [isize; 3]| {
@@ -159,8 +152,15 @@ fn divergence(
                 known(at).map(|n| (n[axis] * dot(n, own).signum(), step as f64))
             };
             let (low, high) = (along_axis(-1), along_axis(1));
-            let (a, b) = (low.unwrap_or((own[axis], 0.0)), high.unwrap_or((own[axis], 0.0)));
-            if a.1 == b.1 { 0.0 } else { (b.0 - a.0) / ((b.1 - a.1) * h[axis]) }
+            let (a, b) = (
+                low.unwrap_or((own[axis], 0.0)),
+                high.unwrap_or((own[axis], 0.0)),
+            );
+            if a.1 == b.1 {
+                0.0
+            } else {
+                (b.0 - a.0) / ((b.1 - a.1) * h[axis])
+            }
         })
         .sum()
 }
@@ -177,7 +177,12 @@ fn source(hessian: Symmetric, distance: f64) -> [f32; 3] {
     e.map(|v| (v * weight) as f32)
 }
 
-fn sheet(tensor: Symmetric, value: f64, (gradient, hessian): (Vec3, Symmetric), sigma: f64) -> Sheet {
+fn sheet(
+    tensor: Symmetric,
+    value: f64,
+    (gradient, hessian): (Vec3, Symmetric),
+    sigma: f64,
+) -> Sheet {
     let n = eigenvector(tensor, eigenvalues(tensor)[2]);
     let [xx, yy, zz, xy, xz, yz] = hessian;
     let bent = [
@@ -275,14 +280,20 @@ impl Block {
         let centre = at(p);
         let gradient =
             std::array::from_fn(|a| (at(p + stride[a]) - at(p - stride[a])) / (2.0 * h[a]));
-        let second = |a: usize| {
-            (at(p + stride[a]) - 2.0 * centre + at(p - stride[a])) / (h[a] * h[a])
-        };
+        let second =
+            |a: usize| (at(p + stride[a]) - 2.0 * centre + at(p - stride[a])) / (h[a] * h[a]);
         let mixed = |a: usize, b: usize| {
             let (s, t) = (stride[a], stride[b]);
             (at(p + s + t) - at(p + s - t) - at(p + t - s) + at(p - s - t)) / (4.0 * h[a] * h[b])
         };
-        let hessian = [second(0), second(1), second(2), mixed(0, 1), mixed(0, 2), mixed(1, 2)];
+        let hessian = [
+            second(0),
+            second(1),
+            second(2),
+            mixed(0, 1),
+            mixed(0, 2),
+            mixed(1, 2),
+        ];
         (gradient, hessian)
     }
 }

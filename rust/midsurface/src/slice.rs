@@ -1,7 +1,7 @@
 //! One slice of one part: its pixels, what is already covered by lines, and the fields in it.
 
 use crate::bricks::{Directory, EDGE, LAYER};
-use crate::components::DisjointSets;
+use crate::components::{touching, DisjointSets};
 use crate::grid::{along, dot, unit, Vec3};
 use crate::interpolation::Sampler;
 use crate::runs::Run;
@@ -61,14 +61,19 @@ impl<'a> Slice<'a> {
             return None;
         }
         let (x, y) = (x as usize, y as usize);
-        let brick = self.directory().brick([x / EDGE, y / EDGE, self.z / EDGE])?;
+        let brick = self
+            .directory()
+            .brick([x / EDGE, y / EDGE, self.z / EDGE])?;
         Some((brick - self.first_brick) * LAYER + y % EDGE * EDGE + x % EDGE)
     }
 
     /// The pixel a point lies in.
     pub fn pixel(&self, p: Point) -> [isize; 2] {
         let h = self.h();
-        [(p[0] / h[0]).round() as isize, (p[1] / h[1]).round() as isize]
+        [
+            (p[0] / h[0]).round() as isize,
+            (p[1] / h[1]).round() as isize,
+        ]
     }
 
     /// The middle of a pixel.
@@ -92,7 +97,11 @@ impl<'a> Slice<'a> {
                 *corner = (weight, self.sheets[entry]);
             }
         }
-        let known = || corners.iter().filter_map(|(w, sheet)| Some((w, normal(sheet)?, sheet[3])));
+        let known = || {
+            corners
+                .iter()
+                .filter_map(|(w, sheet)| Some((w, normal(sheet)?, sheet[3])))
+        };
         let (_, first, _) = known().max_by(|a, b| a.0.total_cmp(b.0))?;
         let (mut mean, mut offset, mut total) = ([0.0; 3], 0.0, 0.0);
         for (weight, n, distance) in known() {
@@ -108,19 +117,20 @@ impl<'a> Slice<'a> {
     /// Finds the slice's components (8 neighbours) and marks their pixels with their numbers.
     pub fn components(&mut self, runs: &[Run]) -> Vec<Vec<Pixel>> {
         let mut sets = DisjointSets::new(runs.len());
-        let mut above = 0;
-        for i in 0..runs.len() {
-            while above < i && runs[above].y + 1 < runs[i].y {
-                above += 1;
-            }
-            for j in above..i {
-                let touch = runs[j].y + 1 == runs[i].y
-                    && runs[j].start <= runs[i].end
-                    && runs[i].start <= runs[j].end;
-                if touch {
-                    sets.join(i, j);
-                }
-            }
+        let rows: Vec<std::ops::Range<usize>> = runs
+            .chunk_by(|a, b| a.y == b.y)
+            .scan(0, |end, row| {
+                *end += row.len();
+                Some(*end - row.len()..*end)
+            })
+            .collect();
+        for pair in rows
+            .windows(2)
+            .filter(|w| runs[w[0].start].y + 1 == runs[w[1].start].y)
+        {
+            touching(runs, pair[1].clone(), pair[0].clone(), |a, b, _| {
+                sets.join(a, b)
+            });
         }
         let mut number = vec![NOWHERE; runs.len()];
         let mut components: Vec<Vec<Pixel>> = Vec::new();
@@ -173,7 +183,8 @@ impl<'a> Slice<'a> {
 
     /// Whether `flag` is set on a pixel.
     pub fn has(&self, [x, y]: [isize; 2], flag: u8) -> bool {
-        self.entry(x, y).is_some_and(|entry| self.flags[entry] & flag != 0)
+        self.entry(x, y)
+            .is_some_and(|entry| self.flags[entry] & flag != 0)
     }
 
     /// Sets `flag` on a pixel.

@@ -23,17 +23,37 @@ impl Polylines {
         if self.thickness.len() != self.points.len() {
             return fail("there is not one thickness a point".into());
         }
-        if let Some(i) = self.points.iter().position(|p| !p.iter().all(|v| v.is_finite())) {
-            return fail(format!("point {i} has a coordinate that is no finite number"));
+        if let Some(i) = self
+            .points
+            .iter()
+            .position(|p| !p.iter().all(|v| v.is_finite()))
+        {
+            return fail(format!(
+                "point {i} has a coordinate that is no finite number"
+            ));
         }
         if let Some(i) = self.thickness.iter().position(|t| !t.is_finite()) {
             return fail(format!("the thickness of point {i} is no finite number"));
         }
         let inside = |line: &Polyline| {
-            line.first.checked_add(line.count).is_some_and(|end| end <= self.points.len())
+            line.first
+                .checked_add(line.count)
+                .is_some_and(|end| end <= self.points.len())
         };
         if let Some(i) = self.lines.iter().position(|line| !inside(line)) {
             return fail(format!("line {i} names points that are not there"));
+        }
+        let mut ranges: Vec<_> = self
+            .lines
+            .iter()
+            .map(|l| (l.first, l.first + l.count))
+            .collect();
+        ranges.sort_unstable();
+        if ranges
+            .windows(2)
+            .any(|w| w[1].0 < w[0].1 && w[1].0 < w[1].1)
+        {
+            return fail("two lines share points".into());
         }
         self.check_planes()
     }
@@ -59,7 +79,11 @@ impl Polylines {
         }
         let tolerance = OFF_PLANE * self.mean_edge();
         let points = |group: &[usize]| -> Vec<Vec3> {
-            group.iter().flat_map(|&line| self.points_of(line)).copied().collect()
+            group
+                .iter()
+                .flat_map(|&line| self.points_of(line))
+                .copied()
+                .collect()
         };
         let centres: Vec<Vec3> = groups.iter().map(|group| mean(&points(group))).collect();
         let normal = self.slice_normal(&groups, &centres);
@@ -75,13 +99,18 @@ impl Polylines {
                 }
             }
         }
-        let heights: Vec<f64> = centres.iter().map(|c| dot(sub(*c, centres[0]), normal)).collect();
+        let heights: Vec<f64> = centres
+            .iter()
+            .map(|c| dot(sub(*c, centres[0]), normal))
+            .collect();
         let rising = heights.windows(2).all(|w| w[1] - w[0] > tolerance);
         let falling = heights.windows(2).all(|w| w[0] - w[1] > tolerance);
         if rising || falling {
             return Ok(());
         }
-        Err(Error::Polylines("two slices lie in one plane, or out of order".into()))
+        Err(Error::Polylines(
+            "two slices lie in one plane, or out of order".into(),
+        ))
     }
 
     /// The direction across all slices: along which the points of a slice vary least.
@@ -90,7 +119,10 @@ impl Polylines {
         for (group, centre) in groups.iter().zip(centres) {
             for p in group.iter().flat_map(|&line| self.points_of(line)) {
                 let [x, y, z] = sub(*p, *centre);
-                for (sum, v) in scatter.iter_mut().zip([x * x, y * y, z * z, x * y, x * z, y * z]) {
+                for (sum, v) in scatter
+                    .iter_mut()
+                    .zip([x * x, y * y, z * z, x * y, x * z, y * z])
+                {
                     *sum += v;
                 }
             }
@@ -109,7 +141,11 @@ impl Polylines {
     fn mean_edge(&self) -> f64 {
         let (mut sum, mut count) = (0.0, 0usize);
         for line in 0..self.lines.len() {
-            sum += self.points_of(line).windows(2).map(|w| length(sub(w[1], w[0]))).sum::<f64>();
+            sum += self
+                .points_of(line)
+                .windows(2)
+                .map(|w| length(sub(w[1], w[0])))
+                .sum::<f64>();
             count += self.lines[line].count.saturating_sub(1);
         }
         sum / count.max(1) as f64
@@ -123,6 +159,7 @@ impl Polylines {
             let points = self.points_of(line);
             let closes = self.lines[line].closed && points.len() > 1;
             points.windows(2).any(|w| near(w[0], w[1]))
+                || (closes && points.len() < 3)
                 || (closes && near(points[0], points[points.len() - 1]))
         };
         if !(0..self.lines.len()).any(repeats) {
@@ -144,7 +181,12 @@ impl Polylines {
             }
             let count = clean.points.len() - first;
             let closed = line.closed && count >= 3;
-            clean.lines.push(Polyline { first, count, closed, ..line.clone() });
+            clean.lines.push(Polyline {
+                first,
+                count,
+                closed,
+                ..line.clone()
+            });
         }
         Cow::Owned(clean)
     }

@@ -10,9 +10,8 @@ pub(crate) type Side = Vec<u32>;
 /// diagonals is taken, which is the one that splits the larger angle.
 pub(crate) fn triangulate(points: &[Vec3], below: &Side, above: &Side) -> Vec<[u32; 3]> {
     let mut triangles = Vec::with_capacity(below.len() + above.len());
-    let diagonal = |i: usize, j: usize| {
-        squared_distance(points[below[i] as usize], points[above[j] as usize])
-    };
+    let diagonal =
+        |i: usize, j: usize| squared_distance(points[below[i] as usize], points[above[j] as usize]);
     let (mut i, mut j) = (0, 0);
     while i + 1 < below.len() || j + 1 < above.len() {
         let advance_below = match (i + 1 < below.len(), j + 1 < above.len()) {

@@ -84,7 +84,11 @@ fn face(distance: &Sampler, from: Vec3, direction: Vec3) -> Reach {
             return Reach::Border(t - step);
         };
         if now < 0.5 {
-            let crossing = if before > 0.5 { (before - 0.5) / (before - now) } else { 0.0 };
+            let crossing = if before > 0.5 {
+                (before - 0.5) / (before - now)
+            } else {
+                0.0
+            };
             return Reach::Face(t - step * (1.0 - crossing));
         }
         before = now;
@@ -111,13 +115,26 @@ fn labelled(distance: &Sampler, p: Vec3) -> Option<f64> {
     let low = low.map(|v| v as usize);
     let mask = |entry: usize| f64::from(u8::from(distance.field[entry] > 0.0));
     let weight = |corner: usize| -> f64 {
-        (0..3).map(|a| if corner >> a & 1 == 1 { t[a] } else { 1.0 - t[a] }).product()
+        (0..3)
+            .map(|a| {
+                if corner >> a & 1 == 1 {
+                    t[a]
+                } else {
+                    1.0 - t[a]
+                }
+            })
+            .product()
     };
     if low.iter().all(|v| v % EDGE + 1 < EDGE) {
         // All eight voxels are in one brick.
         let first = distance.directory.entry(low);
-        let offset = |corner: usize| (corner >> 2) * LAYER + (corner >> 1 & 1) * EDGE + (corner & 1);
-        let sum = |first| (0..8).map(|corner| weight(corner) * mask(first + offset(corner))).sum();
+        let offset =
+            |corner: usize| (corner >> 2) * LAYER + (corner >> 1 & 1) * EDGE + (corner & 1);
+        let sum = |first| {
+            (0..8)
+                .map(|corner| weight(corner) * mask(first + offset(corner)))
+                .sum()
+        };
         return Some(first.map_or(0.0, sum));
     }
     let mut sum = 0.0;

@@ -36,7 +36,12 @@ enum End {
 }
 
 /// Traces the line through `start`, in both directions unless it closes. At most `limit` steps.
-pub(crate) fn trace(slice: &mut Slice, start: Point, component: u32, limit: usize) -> Option<Trace> {
+pub(crate) fn trace(
+    slice: &mut Slice,
+    start: Point,
+    component: u32,
+    limit: usize,
+) -> Option<Trace> {
     let start = slice.clamp(crest(slice, start)?);
     let direction = Across::at(slice, start)?.line();
     if !is_sheet(slice, start) {
@@ -44,13 +49,19 @@ pub(crate) fn trace(slice: &mut Slice, start: Point, component: u32, limit: usiz
     }
     let (mut points, end) = follow(slice, start, direction, component, limit);
     if end == End::Closed {
-        return Some(Trace { points, closed: true });
+        return Some(Trace {
+            points,
+            closed: true,
+        });
     }
     let back = [-direction[0], -direction[1]];
     let (other, _) = follow(slice, start, back, component, limit);
     points.reverse();
     points.extend(&other[1..]);
-    Some(Trace { points, closed: false })
+    Some(Trace {
+        points,
+        closed: false,
+    })
 }
 
 /// The step of a trace in work units.
@@ -100,7 +111,10 @@ pub(crate) fn crest(slice: &Slice, mut p: Point) -> Option<Point> {
     for _ in 0..6 {
         let across = Across::at(slice, p)?;
         let t = (across.offset / across.length).clamp(-reach, reach);
-        p = [p[0] + t * across.direction[0], p[1] + t * across.direction[1]];
+        p = [
+            p[0] + t * across.direction[0],
+            p[1] + t * across.direction[1],
+        ];
         if t.abs() < 1e-4 * reach {
             break;
         }
@@ -122,10 +136,14 @@ fn is_sheet(slice: &Slice, p: Point) -> bool {
     // Where the sheet is one slice up, seen from here.
     let shift = -across.normal[2] * slice.h()[2] / across.length;
     let half_way = |z: usize, t: f64| {
-        let q = [p[0] + t * across.direction[0], p[1] + t * across.direction[1]];
+        let q = [
+            p[0] + t * across.direction[0],
+            p[1] + t * across.direction[1],
+        ];
         0.5 * (own + slice.fraction.value(q, z)) >= 0.5
     };
-    (slice.z > 0 && half_way(slice.z - 1, -shift)) || (slice.z < last && half_way(slice.z + 1, shift))
+    (slice.z > 0 && half_way(slice.z - 1, -shift))
+        || (slice.z < last && half_way(slice.z + 1, shift))
 }
 
 /// Follows the ridge from `start` along `direction`. The first point is `start`.

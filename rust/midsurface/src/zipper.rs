@@ -51,7 +51,8 @@ struct SliceEdges<'a> {
 
 /// Zips all neighbouring slices. Triangles come ordered by component and slice.
 pub(crate) fn zip(polylines: &Polylines, execution: &mut Execution) -> Result<Vec<Zipped>> {
-    if polylines.points.len() > u32::MAX as usize / 4 {
+    // Two triangles a point make six half-edges, numbered in 32 bits.
+    if polylines.points.len() > (u32::MAX as usize - 1) / 8 {
         return Err(Error::Polylines(format!(
             "{} points are more than a mesh of 32-bit indices can hold",
             polylines.points.len()
@@ -81,7 +82,9 @@ pub(crate) fn zip(polylines: &Polylines, execution: &mut Execution) -> Result<Ve
         },
         |found: Vec<Zipped>| {
             let bytes = found.len() * std::mem::size_of::<Zipped>();
-            triangles.try_reserve(found.len()).map_err(|_| Error::OutOfMemory(bytes))?;
+            triangles
+                .try_reserve(found.len())
+                .map_err(|_| Error::OutOfMemory(bytes))?;
             triangles.extend(found);
             Ok(())
         },
@@ -92,7 +95,11 @@ pub(crate) fn zip(polylines: &Polylines, execution: &mut Execution) -> Result<Ve
 /// The index of the point after point `at` of a line, going round a closed one.
 fn point(line: &Polyline, at: i64) -> u32 {
     let n = line.count as i64;
-    let at = if line.closed { at.rem_euclid(n) } else { at.clamp(0, n - 1) };
+    let at = if line.closed {
+        at.rem_euclid(n)
+    } else {
+        at.clamp(0, n - 1)
+    };
     (line.first as i64 + at) as u32
 }
 
@@ -153,8 +160,14 @@ impl<'a> SliceEdges<'a> {
         let line = self.line(edge);
         let at = i64::from(self.edges[edge].at);
         let n = edge_count(line) as i64;
-        let target = if line.closed { (at + steps).rem_euclid(n) } else { at + steps };
-        (0..n).contains(&target).then(|| (edge as i64 - at + target) as usize)
+        let target = if line.closed {
+            (at + steps).rem_euclid(n)
+        } else {
+            at + steps
+        };
+        (0..n)
+            .contains(&target)
+            .then(|| (edge as i64 - at + target) as usize)
     }
 
     /// Steps along the line from edge a to edge b of the same line; the shorter way round.
@@ -215,12 +228,11 @@ impl<'a> Pairing<'a> {
                 let b = nearest_above[a];
                 let (p, q) = (&below.edges[a], &above.edges[b]);
                 let mutual = nearest_below[b] == a;
-                let gap = squared_distance(p.middle, q.middle).sqrt();
+                let gap = length(sub(p.middle, q.middle));
                 let thick = p.thickness.max(q.thickness);
-                let edge = length(sub(p.middle, q.middle)).min(gap);
                 // Lines of one sheet run side by side and within the label.
                 let aligned = dot(p.direction, q.direction).abs() > 0.3;
-                (mutual && aligned && edge <= reach(below, a, thick)).then_some(b)
+                (mutual && aligned && gap <= reach(below, a, thick)).then_some(b)
             })
             .collect();
         let mut taken_above = vec![false; above.edges.len()];
@@ -284,7 +296,8 @@ impl<'a> Pairing<'a> {
             .filter_map(|a| self.partner[a].map(|b| (a, b)))
             .collect();
         let mut chains = Vec::new();
-        for pairs in pairs.chunk_by(|p, q| self.below.edges[p.0].line == self.below.edges[q.0].line) {
+        for pairs in pairs.chunk_by(|p, q| self.below.edges[p.0].line == self.below.edges[q.0].line)
+        {
             self.chains_of_line(pairs, &mut chains);
         }
         chains
@@ -300,8 +313,9 @@ impl<'a> Pairing<'a> {
         let closed = self.below.line(pairs[0].0).closed;
         let last = pairs.len() - 1;
         let wraps = closed && pairs.len() > 2 && self.linked(pairs[last], pairs[0]);
-        let breaks: Vec<usize> =
-            (1..pairs.len()).filter(|&i| !self.linked(pairs[i - 1], pairs[i])).collect();
+        let breaks: Vec<usize> = (1..pairs.len())
+            .filter(|&i| !self.linked(pairs[i - 1], pairs[i]))
+            .collect();
         if wraps && breaks.is_empty() {
             chains.push(chain(pairs.to_vec(), self.goes_round(pairs)));
             return;
@@ -309,7 +323,10 @@ impl<'a> Pairing<'a> {
         let mut bounds = vec![0];
         bounds.extend(&breaks);
         bounds.push(pairs.len());
-        let mut pieces: Vec<Vec<_>> = bounds.windows(2).map(|w| pairs[w[0]..w[1]].to_vec()).collect();
+        let mut pieces: Vec<Vec<_>> = bounds
+            .windows(2)
+            .map(|w| pairs[w[0]..w[1]].to_vec())
+            .collect();
         if wraps {
             // The line's first point lies within a chain: join its two pieces.
             let first = pieces.remove(0);
@@ -323,7 +340,9 @@ impl<'a> Pairing<'a> {
     /// Whether linked pairs go once round both lines.
     fn goes_round(&self, pairs: &[(usize, usize)]) -> bool {
         let turn = |steps: &dyn Fn(usize, usize) -> i64| -> i64 {
-            (0..pairs.len()).map(|i| steps(i, (i + 1) % pairs.len())).sum()
+            (0..pairs.len())
+                .map(|i| steps(i, (i + 1) % pairs.len()))
+                .sum()
         };
         let below = turn(&|i, j| self.below.steps(pairs[i].0, pairs[j].0));
         let above = turn(&|i, j| self.above.steps(pairs[i].1, pairs[j].1));
@@ -343,12 +362,17 @@ impl<'a> Pairing<'a> {
                 side(above, first.1, 0, count(above, first.1), sign),
             ];
         }
-        let total = |steps: &dyn Fn(usize) -> i64| -> i64 { (1..chain.pairs.len()).map(steps).sum() };
+        let total =
+            |steps: &dyn Fn(usize) -> i64| -> i64 { (1..chain.pairs.len()).map(steps).sum() };
         let span = [
             total(&|i| below.steps(chain.pairs[i - 1].0, chain.pairs[i].0)),
             total(&|i| above.steps(chain.pairs[i - 1].1, chain.pairs[i].1).abs()),
         ];
-        let mean: f64 = chain.pairs.iter().map(|&(a, b)| self.distance(a, b)).sum::<f64>()
+        let mean: f64 = chain
+            .pairs
+            .iter()
+            .map(|&(a, b)| self.distance(a, b))
+            .sum::<f64>()
             / chain.pairs.len() as f64;
         for (a, b) in chain.pairs.windows(2).map(|w| (w[0], w[1])) {
             self.take_between(a, b, sign);
@@ -356,8 +380,20 @@ impl<'a> Pairing<'a> {
         let before = self.free_edges(first, [-1, -sign], mean);
         let after = self.free_edges(last, [1, sign], mean);
         [
-            side(below, first.0, -before[0], span[0] + 1 + before[0] + after[0], 1),
-            side(above, first.1, -before[1], span[1] + 1 + before[1] + after[1], sign),
+            side(
+                below,
+                first.0,
+                -before[0],
+                span[0] + 1 + before[0] + after[0],
+                1,
+            ),
+            side(
+                above,
+                first.1,
+                -before[1],
+                span[1] + 1 + before[1] + after[1],
+                sign,
+            ),
         ]
     }
 
@@ -430,6 +466,10 @@ fn side(edges: &SliceEdges, edge: usize, offset: i64, count: i64, sign: i64) -> 
     let line = edges.line(edge);
     let at = i64::from(edges.edges[edge].at);
     // Walking backward, an edge is entered at its end.
-    let first = if sign > 0 { at + offset } else { at + 1 - offset };
+    let first = if sign > 0 {
+        at + offset
+    } else {
+        at + 1 - offset
+    };
     (0..=count).map(|k| point(line, first + sign * k)).collect()
 }
