@@ -2,7 +2,7 @@
 //!
 //! A thin layer: every function checks its arguments, borrows the caller's arrays as slices,
 //! calls the core crate and hands the result over as an opaque handle. Each runs behind one panic
-//! guard ([`error::guarded`] or [`error::guarded_value`]), so that no panic unwinds into C. This
+//! guard (`guarded` or `guarded_value` in `error.rs`), so that no panic unwinds into C. This
 //! crate is the only place with `unsafe`; the doc comments of public items become the header.
 #![allow(non_camel_case_types)] // the names are those of the C header
 #![allow(clippy::missing_safety_doc)] // the header states what each pointer must be
