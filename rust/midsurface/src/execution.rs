@@ -87,6 +87,19 @@ impl<'a> Execution<'a> {
         }
     }
 
+    /// Reports that the whole run is done.
+    pub fn finish(&mut self) -> Result<()> {
+        self.passes_done = self.passes;
+        self.report(0.0)
+    }
+
+    /// Reports a pass that was made on the calling thread.
+    pub fn pass_done(&mut self) -> Result<()> {
+        self.report(1.0)?;
+        self.passes_done += 1;
+        Ok(())
+    }
+
     /// Passes a warning on.
     pub fn warning(&mut self, message: &str) {
         self.observer.warning(message);

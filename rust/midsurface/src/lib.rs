@@ -13,7 +13,7 @@
 //! | ridge field | distance → a smooth field whose crest is the mid-surface | `ridge.rs` |
 //! | polylines | ridge field → a line midway through every slice (`slice.rs`, `trace.rs`) | `polylines.rs` |
 //! | zipper | polylines → strips of triangles between slices (`strip.rs`) | `zipper.rs` |
-//! | mesh | triangles → 2-manifold (`manifold.rs`), better triangles (`flips.rs`), normals | `mesh.rs` |
+//! | mesh | triangles → 2-manifold (`manifold.rs`), better triangles (`flips.rs`), no terraces (`terraces.rs`), normals | `mesh.rs` |
 //!
 //! Arrays are in the order x, y, z, volumes have shape (z, y, x) with x fastest. Lengths inside
 //! are in units of the finest spacing, so that the same voxels in other units give the same mesh;
@@ -45,6 +45,7 @@ mod sheet;
 mod slice;
 mod slices;
 mod strip;
+mod terraces;
 mod thickness;
 mod trace;
 mod volume;
@@ -207,7 +208,12 @@ fn zip(polylines: &Polylines, execution: &mut Execution, from: f64) -> Result<Me
     let polylines = &*polylines.without_repeats();
     execution.stage("Zipping polylines", from, from + (1.0 - from) * 0.6, 1)?;
     let triangles = zipper::zip(polylines, execution)?;
-    execution.stage("Making the mesh", from + (1.0 - from) * 0.6, 1.0, 1)?;
+    execution.stage(
+        "Making the mesh",
+        from + (1.0 - from) * 0.6,
+        1.0,
+        mesh::PASSES,
+    )?;
     let mesh = Mesh::assemble(polylines, triangles, execution)?;
     if mesh.triangles.is_empty() && !polylines.lines.is_empty() {
         execution.warning(
@@ -216,7 +222,7 @@ fn zip(polylines: &Polylines, execution: &mut Execution, from: f64) -> Result<Me
         );
     }
     warn_if_far(&mesh, execution);
-    execution.report(1.0)?;
+    execution.finish()?;
     Ok(mesh)
 }
 

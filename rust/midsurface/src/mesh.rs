@@ -8,7 +8,11 @@ use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::{Edges, NONE};
 use crate::manifold::{make_manifold, Surface};
 use crate::polylines::Polylines;
+use crate::terraces::{flatten_terraces, DEGREE};
 use crate::zipper::Zipped;
+
+/// Passes over the mesh that [`Mesh::assemble`] makes, for its progress.
+pub(crate) const PASSES: usize = 3 + 2 * DEGREE;
 
 /// A triangle mesh: a 2-manifold with boundary, consistently wound in each connected piece.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -78,11 +82,13 @@ impl Mesh {
             triangles: zipped.iter().map(|z| z.0).collect(),
         };
         make_manifold(&mut surface);
-        execution.report(0.25)?;
+        execution.pass_done()?;
         flip_edges(&surface.points, &mut surface.triangles);
-        execution.report(0.5)?;
+        execution.pass_done()?;
         turn_outward(&surface.points, &mut surface.triangles);
-        execution.report(0.75)?;
+        execution.pass_done()?;
+        let rough = normals(&surface.points, &surface.triangles);
+        flatten_terraces(&mut surface.points, &surface.triangles, &rough, execution)?;
         let line_of = line_of_points(polylines);
         let line = |t: &[u32; 3]| &polylines.lines[line_of[surface.source[t[0] as usize] as usize]];
         let mut mesh = Self {
@@ -261,6 +267,15 @@ fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
                 .acos();
             let sum = &mut normals[t[k] as usize];
             *sum = along(*sum, angle, normal);
+        }
+    }
+    // Where triangles fold back on each other their normals cancel: any one of them will do.
+    for t in triangles {
+        let [a, b, c] = t.map(|p| points[p as usize]);
+        for p in t.map(|p| p as usize) {
+            if length(normals[p]) < 1e-6 {
+                normals[p] = unit(cross(sub(b, a), sub(c, a)));
+            }
         }
     }
     normals.into_iter().map(unit).collect()

@@ -129,7 +129,7 @@ impl Polylines {
         }
         let [least, middle, largest] = eigenvalues(scatter);
         let between = sub(centres[centres.len() - 1], centres[0]);
-        if middle - least > 1e-9 * largest {
+        if middle - least > 1e-6 * largest {
             return eigenvector(scatter, least);
         }
         // All lines are straight and parallel: across them, from slice to slice.

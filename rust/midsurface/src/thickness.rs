@@ -9,9 +9,10 @@ use crate::interpolation::Sampler;
 const STEP: f64 = 0.5;
 
 /// How a ray through the label ended, after which length.
+#[derive(Clone, Copy)]
 enum Reach {
     Face(f64),
-    Border(f64),
+    Border,
 }
 
 /// What a point sees of the label, work units.
@@ -34,23 +35,25 @@ impl View {
     pub fn new(distance: &Sampler, from: Vec3, normal: Vec3) -> Self {
         let look = |v: Vec3| [v, v.map(|x| -x)].map(|direction| face(distance, from, direction));
         let ahead = look(normal);
-        let mut thickness = match ahead {
-            [Reach::Face(a), Reach::Face(b)] | [Reach::Border(a), Reach::Border(b)] => a + b,
-            [Reach::Face(a), Reach::Border(_)] | [Reach::Border(_), Reach::Face(a)] => 2.0 * a,
+        let about = match ahead {
+            [Reach::Face(a), Reach::Face(b)] => a + b,
+            [Reach::Face(a), Reach::Border] | [Reach::Border, Reach::Face(a)] => 2.0 * a,
+            [Reach::Border, Reach::Border] => 2.0 * depth(distance, from),
         };
-        // Rays that leave a border's corner on both sides see no face at all.
-        let nowhere = matches!(ahead, [Reach::Border(_), Reach::Border(_)]);
-        let across = parallel_to_border(distance, from, normal, thickness);
+        let across = parallel_to_border(distance, from, normal, about);
         let at_border = across != normal;
         let cosine = length(across);
         // A corner of the volume leaves too little of the normal to look along.
-        let faces = match if at_border { look(unit(across)) } else { ahead } {
-            [Reach::Face(a), Reach::Face(b)] if cosine > 0.5 => Some([a * cosine, b * cosine]),
+        let sideways = (at_border && cosine > 0.5).then(|| look(unit(across)));
+        let faces = match sideways.as_ref().unwrap_or(&ahead) {
+            [Reach::Face(a), Reach::Face(b)] => Some([a * cosine, b * cosine]),
             _ => None,
         };
-        if let (true, Some([a, b])) = (nowhere, faces) {
-            thickness = a + b;
-        }
+        let thickness = match (ahead, faces, sideways) {
+            ([Reach::Face(a), Reach::Face(b)], ..) | (_, Some([a, b]), _) => a + b,
+            (.., Some([Reach::Face(a), _] | [_, Reach::Face(a)])) => 2.0 * a * cosine,
+            _ => about,
+        };
         let to_middle = faces.map(|[a, b]| 0.5 * (a - b));
         Self {
             normal,
@@ -81,7 +84,7 @@ fn face(distance: &Sampler, from: Vec3, direction: Vec3) -> Reach {
         let step = (depth(distance, along(from, t, direction)) - 1.5).max(STEP);
         t += step;
         let Some(now) = labelled(distance, along(from, t, direction)) else {
-            return Reach::Border(t - step);
+            return Reach::Border;
         };
         if now < 0.5 {
             let crossing = if before > 0.5 {
