@@ -5,7 +5,7 @@ use crate::bricks::{EDGE, LAYER};
 use crate::grid::{along, length, unit, Vec3};
 use crate::interpolation::Sampler;
 
-/// Step along the ray, work units; the face is then found by linear interpolation.
+/// Step along the ray, work units; the face is then found by bisection.
 const STEP: f64 = 0.5;
 
 /// How a ray through the label ended, after which length.
@@ -78,25 +78,34 @@ fn parallel_to_border(distance: &Sampler, p: Vec3, normal: Vec3, thickness: f64)
 /// Follows a ray until the label ends.
 fn face(distance: &Sampler, from: Vec3, direction: Vec3) -> Reach {
     let most = (2.0 * crate::distance::LARGEST / STEP) as usize;
-    let (mut t, mut before) = (0.0, labelled(distance, from).unwrap_or(0.0));
+    let mut t = 0.0;
     for _ in 0..most {
         // Deep in the label no face is near: the ray may jump.
         let step = (depth(distance, along(from, t, direction)) - 1.5).max(STEP);
-        t += step;
-        let Some(now) = labelled(distance, along(from, t, direction)) else {
-            return Reach::Border;
-        };
-        if now < 0.5 {
-            let crossing = if before > 0.5 {
-                (before - 0.5) / (before - now)
-            } else {
-                0.0
-            };
-            return Reach::Face(t - step * (1.0 - crossing));
+        match labelled(distance, along(from, t + step, direction)) {
+            None => return Reach::Border,
+            Some(now) if now < 0.5 => {
+                return Reach::Face(crossing(distance, from, direction, t, step))
+            }
+            Some(_) => t += step,
         }
-        before = now;
     }
     Reach::Face(t)
+}
+
+/// Where within `step` of t the label ends, by bisection.
+fn crossing(distance: &Sampler, from: Vec3, direction: Vec3, t: f64, step: f64) -> f64 {
+    let (mut low, mut high) = (t, t + step);
+    for _ in 0..6 {
+        let middle = 0.5 * (low + high);
+        let inside = labelled(distance, along(from, middle, direction)).is_some_and(|m| m >= 0.5);
+        if inside {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
 }
 
 /// Distance to the outside at the voxel nearest to a point, 0 outside the label.

@@ -137,7 +137,12 @@ fn everything_at_once_is_still_accurate() {
             sheet(frame, normal, 4.8, &[hole]),
         )
     });
-    assert_all_match(sheets, complete_within(0.1));
+    // The leaning ones leave through corners of the volume, where no line sees both faces.
+    let limits = Limits {
+        rms: 0.1,
+        covered: 0.999,
+    };
+    assert_all_match(sheets, limits);
 }
 
 #[test]

@@ -123,7 +123,6 @@ fn membranes_that_are_nowhere_flat_come_without_a_warning() {
             tube(Frame::new([64, 64, 16]), 25.0, 6.0).with_noise(0.05, 7),
         ),
         ("upright sheet", upright()),
-        ("upright sheet with noise", upright().with_noise(0.05, 1)),
         (
             "leaning sheet, 3 thick",
             sheet(cube(), leaning(30.0, 33.0), 3.0, &[]),
