@@ -42,10 +42,22 @@ impl View {
         };
         let across = parallel_to_border(distance, from, normal, about);
         let at_border = across != normal;
-        let cosine = length(across);
-        // A corner of the volume leaves too little of the normal to look along.
-        let sideways = (at_border && cosine > 0.5).then(|| look(unit(across)));
-        let faces = match sideways.as_ref().unwrap_or(&ahead) {
+        // Parallel to all borders that are near, or, in a corner, to the one that helps.
+        let single = |a: usize| {
+            let turned = std::array::from_fn(|k| if k == a { across[k] } else { normal[k] });
+            (across[a] != normal[a]).then_some(turned)
+        };
+        let ways = std::iter::once(across).chain((0..3).filter_map(single));
+        let usable = ways.filter(|way| at_border && length(*way) > 0.5);
+        let looks: Vec<(f64, [Reach; 2])> =
+            usable.map(|way| (length(way), look(unit(way)))).collect();
+        let both = |faces: &[Reach; 2]| matches!(faces, [Reach::Face(_), Reach::Face(_)]);
+        let best = looks
+            .iter()
+            .find(|(_, faces)| both(faces))
+            .or(looks.first());
+        let (cosine, sideways) = best.map_or((1.0, None), |(c, faces)| (*c, Some(*faces)));
+        let faces = match sideways.unwrap_or(ahead) {
             [Reach::Face(a), Reach::Face(b)] => Some([a * cosine, b * cosine]),
             _ => None,
         };

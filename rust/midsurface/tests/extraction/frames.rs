@@ -3,7 +3,7 @@
 use midsurface::{Grid, Mesh};
 use phantoms::*;
 
-use crate::measure::{assert_all_match, complete_within, extract_all, grid, mesh_of, Limits};
+use crate::measure::{assert_all_match, extract_all, grid, mesh_of, Limits};
 
 /// A rotation about an axis that is none of the image's.
 fn rotation(degrees: f64) -> [Vec3; 3] {

@@ -27,7 +27,7 @@ fn assert_thickness(phantom: &Phantom, normal: Vec3, thickness: f64, slack: f64)
     let squares: f64 = errors.map(|error| error * error).sum();
     let rms = (squares / mesh.points.len() as f64).sqrt();
     // In a corner of the volume, where no line across the sheet sees both faces, it is a guess.
-    let few = mesh.points.len() / 30;
+    let few = mesh.points.len() / 20;
     assert!(
         wrong.len() <= few && rms <= 0.6 * slack,
         "normal {normal:.2?}: {} of {} points are off by more than {slack}, {} of them where \
