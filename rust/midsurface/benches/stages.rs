@@ -3,8 +3,8 @@
 //!
 //! `cargo bench -p midsurface [-- PART OF A NAME]`
 
-#[path = "../tests/extraction/vtk_image.rs"]
-mod vtk_image;
+#[path = "../tests/extraction/image_file.rs"]
+mod image_file;
 
 use std::hint::black_box;
 use std::path::Path;
@@ -34,7 +34,7 @@ fn main() {
     for name in ["Fig13A", "Fig13B", "Fig7", "Fig11-OMM", "Fig11-IMM"] {
         let path = folder.join(name).with_extension("vti");
         if path.exists() {
-            let (labels, grid) = vtk_image::read(&path);
+            let (labels, grid) = image_file::read(&path);
             measure(&mut criterion, name, &labels, &grid);
         } else {
             println!("skipped: {} is not there", path.display());

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use midsurface::Grid;
 
+use crate::image_file;
 use crate::measure::extract_all;
-use crate::vtk_image;
 
 /// Mean quality in hundredths, mean smallest angle in degrees and share of interior points with 5
 /// to 7 edges in per mille, each rounded.
@@ -24,7 +24,7 @@ fn check(name: &str, least: AtLeast) {
         println!("skipped: {} is not there", path.display());
         return;
     }
-    let (labels, grid): (Vec<u8>, Grid) = vtk_image::read(&path);
+    let (labels, grid): (Vec<u8>, Grid) = image_file::read(&path);
     assert_eq!(labels.len(), grid.dimensions.iter().product::<usize>());
     // Sound, too: that is asserted for every mesh.
     let (mesh, _) = extract_all(&labels, grid);

@@ -1,4 +1,4 @@
-//! Reads the one kind of VTK image file that the real data comes in: one array of bytes, inline,
+//! Reads the one kind of .vti file that the real data comes in: one array of bytes, inline,
 //! base64, compressed with zlib.
 
 use std::io::Read;
