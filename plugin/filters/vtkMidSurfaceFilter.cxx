@@ -25,6 +25,7 @@ void vtkMidSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Method: " << this->Method << "\n";
+  os << indent << "EdgeLength: " << this->EdgeLength << "\n";
 }
 
 //------------------------------------------------------------------------------
@@ -45,6 +46,7 @@ void vtkMidSurfaceFilter::Extract(
   FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output)
 {
   run.Options.Method = static_cast<uint32_t>(this->Method);
+  run.Options.EdgeLength = this->EdgeLength;
   const midsurface::Mesh mesh = midsurface::Extract(volume.Description(), run.Options);
   CopyMesh(midsurface::Arrays(mesh), vtkPolyData::SafeDownCast(output));
 }

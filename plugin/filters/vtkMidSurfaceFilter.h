@@ -41,6 +41,15 @@ public:
   vtkGetMacro(Method, int);
   ///@}
 
+  ///@{
+  /**
+   * The length of the mesh's edges to aim at, in the image's units; 0, the default: the square root
+   * of 2 times the finest spacing. A negative length is an error of the run.
+   */
+  vtkSetMacro(EdgeLength, double);
+  vtkGetMacro(EdgeLength, double);
+  ///@}
+
   /**
    * The mesh, once updated.
    */
@@ -54,6 +63,7 @@ protected:
   void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) override;
 
   int Method = POLYLINE_ZIPPER;
+  double EdgeLength = 0.0;
 
 private:
   vtkMidSurfaceFilter(const vtkMidSurfaceFilter&) = delete;

@@ -12,6 +12,7 @@ class Properties(FilterTest):
         self.assertEqual(list(proxy.Labels), ["1", "2", "3"])
         self.assertEqual(proxy.Method, "Polyline zipper")
         self.assertEqual(proxy.Threads, 0)
+        self.assertEqual(proxy.EdgeLength, 0)
         self.assertEqual(list(proxy.GetProperty("Method").GetAvailable()), ["Polyline zipper"])
 
     def test_stages_have_theirs(self):
@@ -40,9 +41,13 @@ class Properties(FilterTest):
             self.assertTrue(help_text.GetShortHelp() and help_text.GetLongHelp())
             self.assertGreater(len(help_text.GetDescription()), 200)
 
-    def test_threads_are_advanced(self):
+    def test_what_few_need_is_advanced(self):
         proxy = simple.MidSurface(Input=source(image(sheets())))
-        for name, visibility in (("Threads", "advanced"), ("Method", "default")):
+        for name, visibility in (
+            ("Threads", "advanced"),
+            ("EdgeLength", "advanced"),
+            ("Method", "default"),
+        ):
             self.assertEqual(
                 proxy.SMProxy.GetProperty(name).GetPanelVisibility(), visibility, name
             )
@@ -58,6 +63,13 @@ class Properties(FilterTest):
         mesh, messages = update(proxy)
         self.assert_empty(mesh)
         self.assertEqual(len(messages.errors), 1)
+
+    def test_a_negative_edge_length_is_an_error(self):
+        proxy = simple.MidSurface(Input=source(image(sheets())), EdgeLength=-2)
+        mesh, messages = update(proxy)
+        self.assert_empty(mesh)
+        self.assertEqual(len(messages.errors), 1)
+        self.assertIn("edge length -2", messages.errors[0])
 
 
 if __name__ == "__main__":

@@ -114,6 +114,10 @@ typedef enum midsurface_method {
    * A line in every slice along z, the lines of neighbouring slices joined by triangles.
    */
   MIDSURFACE_METHOD_POLYLINE_ZIPPER = 0,
+  /**
+   * The crest of the ridge field in every direction.
+   */
+  MIDSURFACE_METHOD_RIDGE_SURFACE,
 } midsurface_method;
 
 /**
@@ -190,6 +194,11 @@ typedef struct midsurface_options {
    * Number of worker threads; 0, the default: one a core. The result does not depend on it.
    */
   uint32_t threads;
+  /**
+   * The mesh's edge length to aim at, in the unit of the spacing: finite, not negative. 0, the
+   * default: the square root of 2 times the finest spacing.
+   */
+  double edge_length;
   /**
    * The labels to extract. NULL, the default: all. Not NULL with label_count 0: none.
    */

@@ -49,6 +49,7 @@ struct Options
 {
   std::uint32_t Method = MIDSURFACE_METHOD_POLYLINE_ZIPPER;
   std::uint32_t Threads = 0;                         ///< 0: one a core.
+  double EdgeLength = 0.0;                           ///< 0: chosen by the finest spacing.
   std::optional<std::vector<std::int64_t>> Labels;   ///< Absent: all; empty: none.
   std::function<bool(double, const char*)> Progress; ///< Fraction and stage; false cancels.
   std::function<void(const char*)> Warning;
@@ -83,6 +84,7 @@ public:
   {
     this->Target.method = options.Method;
     this->Target.threads = options.Threads;
+    this->Target.edge_length = options.EdgeLength;
     if (options.Labels)
     {
       // An empty vector's data() may be NULL, which would mean all labels.

@@ -14,6 +14,8 @@ use crate::error::{c_string, guarded_value, midsurface_error};
 pub enum midsurface_method {
     /// A line in every slice along z, the lines of neighbouring slices joined by triangles.
     PolylineZipper = 0,
+    /// The crest of the ridge field in every direction.
+    RidgeSurface,
 }
 
 /// What a run may be told. Start from midsurface_options_default, so that fields that are added
@@ -25,6 +27,9 @@ pub struct midsurface_options {
     pub method: u32,
     /// Number of worker threads; 0, the default: one a core. The result does not depend on it.
     pub threads: u32,
+    /// The mesh's edge length to aim at, in the unit of the spacing: finite, not negative. 0, the
+    /// default: the square root of 2 times the finest spacing.
+    pub edge_length: f64,
     /// The labels to extract. NULL, the default: all. Not NULL with label_count 0: none.
     pub labels: *const i64,
     /// Number of values in labels; 0 where labels is NULL.
@@ -50,6 +55,7 @@ pub extern "C" fn midsurface_options_default() -> midsurface_options {
     let default = midsurface_options {
         method: midsurface_method::PolylineZipper as u32,
         threads: 0,
+        edge_length: 0.0,
         labels: ptr::null(),
         label_count: 0,
         progress: None,
@@ -87,12 +93,6 @@ pub(crate) unsafe fn read(
 ) -> Result<(Options, Callbacks), midsurface_error> {
     // SAFETY: the same contract.
     let options = unsafe { value(options, "options") }?;
-    if options.method != midsurface_method::PolylineZipper as u32 {
-        return Err(midsurface_error::invalid(format!(
-            "`options.method` is {}, which is no midsurface_method",
-            options.method
-        )));
-    }
     if options.labels.is_null() && options.label_count > 0 {
         return Err(midsurface_error::invalid(format!(
             "`options.labels` is NULL, but `options.label_count` is {}",
@@ -102,9 +102,22 @@ pub(crate) unsafe fn read(
     // SAFETY: as the header describes.
     let labels = unsafe { optional_slice(options.labels, options.label_count, "options.labels") }?;
     let core = Options {
-        method: Method::PolylineZipper,
+        method: method(options.method)?,
         labels: labels.map(<[i64]>::to_vec),
         threads: options.threads as usize,
+        edge_length: options.edge_length,
     };
     Ok((core, Callbacks(options)))
+}
+
+fn method(number: u32) -> Result<Method, midsurface_error> {
+    const POLYLINE_ZIPPER: u32 = midsurface_method::PolylineZipper as u32;
+    const RIDGE_SURFACE: u32 = midsurface_method::RidgeSurface as u32;
+    match number {
+        POLYLINE_ZIPPER => Ok(Method::PolylineZipper),
+        RIDGE_SURFACE => Ok(Method::RidgeSurface),
+        _ => Err(midsurface_error::invalid(format!(
+            "`options.method` is {number}, which is no midsurface_method"
+        ))),
+    }
 }

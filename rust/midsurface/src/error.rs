@@ -50,6 +50,9 @@ pub enum Error {
         /// The labels present.
         present: String,
     },
+    /// The edge length is a length, or 0.
+    #[error("the edge length {0} is not usable: give a positive length in the unit of the volume, or 0 to have it chosen")]
+    EdgeLength(f64),
     /// Polylines that cannot be zipped.
     #[error("the polylines cannot be joined: {0}")]
     Polylines(String),

@@ -72,6 +72,9 @@ pub enum Method {
     /// The paper's method: a line in every slice along z, neighbouring lines zipped together.
     #[default]
     PolylineZipper,
+    /// The crest of the ridge field in every direction: membranes that lie flat in the slices,
+    /// too.
+    RidgeSurface,
 }
 
 /// What a run may be told. The default is right for most.
@@ -83,16 +86,29 @@ pub struct Options {
     pub labels: Option<Vec<i64>>,
     /// Number of worker threads; 0: one a core.
     pub threads: usize,
+    /// The mesh's edge length to aim at, world units; 0: √2 times the finest spacing.
+    pub edge_length: f64,
+}
+
+impl Options {
+    fn check(&self) -> Result<()> {
+        if self.edge_length >= 0.0 && self.edge_length.is_finite() {
+            Ok(())
+        } else {
+            Err(Error::EdgeLength(self.edge_length))
+        }
+    }
 }
 
 /// The mid-surface of the labels as a triangle mesh.
 ///
 /// # Errors
-/// Where the scalars are no segmentation, none of the labels asked for is there, memory is
-/// refused, or the observer cancels.
+/// Where the scalars are no segmentation, none of the labels asked for is there, an option is
+/// unusable, memory is refused, or the observer cancels.
 pub fn extract(volume: &Volume, options: &Options, observer: &mut dyn Observer) -> Result<Mesh> {
+    options.check()?;
     match options.method {
-        Method::PolylineZipper => {
+        Method::PolylineZipper | Method::RidgeSurface => {
             let mut execution = Execution::new(options.threads, observer)?;
             let polylines = trace_polylines(volume, options, &mut execution, 0.7)?;
             zip(&polylines, &mut execution, 0.7)

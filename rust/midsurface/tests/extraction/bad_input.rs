@@ -279,3 +279,17 @@ fn a_raw_tomogram_of_8_bits() {
     };
     assert!(error.to_string().contains("raw tomogram"), "{error}");
 }
+
+#[test]
+fn an_edge_length_that_is_no_length() {
+    let labels = sheet(1u8);
+    let volume = Volume::new(&labels, Grid::new([20; 3])).expect("usable");
+    for edge_length in [-1.0, f64::NAN, f64::INFINITY] {
+        let options = Options {
+            edge_length,
+            ..Options::default()
+        };
+        let refusal = extract(&volume, &options, &mut Quiet::default()).unwrap_err();
+        assert!(matches!(refusal, Error::EdgeLength(_)), "{refusal}");
+    }
+}
