@@ -3,6 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/build.sh
+. scripts/vtk9.sh
 
 install_packages "${build_packages[@]}" "${display_packages[@]}" clang-format
 install_rust
@@ -15,6 +16,7 @@ git ls-files '*.h' '*.hpp' '*.cxx' '*.c' | grep -v '/midsurface\.h$' |
   xargs --no-run-if-empty clang-format --dry-run --Werror
 
 build_all
+build_vtk9
 
 say "Rust: lints and documentation"
 if cargo clippy --version >/dev/null 2>&1; then
@@ -29,6 +31,8 @@ cargo test --locked --workspace --release
 
 say "C, C++ and pvpython: tests"
 with_display ctest --test-dir build --output-on-failure
+say "The library for VTK 9.1: tests"
+ctest --test-dir build/vtk9 --output-on-failure
 
 say "Both commands from outside"
 tests/demo/run.sh

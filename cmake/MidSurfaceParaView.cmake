@@ -16,6 +16,12 @@ paraview_plugin_build(
   RUNTIME_DESTINATION "${CMAKE_INSTALL_BINDIR}"
   LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}"
+  # A list that a ParaView, told of it in paraview.conf, loads the plugin by when it starts.
+  PLUGINS_FILE_NAME "midsurface.plugins.xml"
+  AUTOLOAD MidSurface
+  INSTALL_HEADERS OFF
+  PLUGINS_COMPONENT paraview_plugin
+  TARGET_COMPONENT paraview_plugin
   PLUGINS ${plugins})
 
 set(MIDSURFACE_PLUGIN

@@ -75,20 +75,27 @@ install_rust() {
   rust_is_recent || fail "Rust $rust_needed or later is needed, but $(cargo --version) was found"
 }
 
-# Configures once and builds what is out of date, into build/. Sets `plugin`, the file to load.
+# One target folder for CMake and for cargo called by hand, so that nothing is built twice.
+export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/build/cargo}"
+
+# configure FOLDER OPTION...: once; later, the build configures again by itself where it must.
+configure() {
+  local folder=$1
+  shift
+  [ ! -f "$folder/build.ninja" ] || return 0
+  mkdir -p "$folder"
+  cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" >"$folder/configure.log" 2>&1 || {
+    cat "$folder/configure.log" >&2
+    fail "CMake could not configure"
+  }
+}
+
+# Builds what is out of date, into build/. Sets `plugin`, the file to load.
 build_all() {
-  # One target folder for CMake and for cargo called by hand, so that nothing is built twice.
-  export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/build/cargo}"
   say "Building into build/"
-  if [ ! -f build/build.ninja ]; then
-    mkdir -p build
-    cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release >build/configure.log 2>&1 || {
-      cat build/configure.log >&2
-      fail "CMake could not configure"
-    }
-  fi
+  configure build
   cmake --build build || fail "the build failed"
-  plugin=$(find "$PWD/build" -name MidSurface.so -path '*plugins*' | head -n 1)
+  plugin=$(find "$PWD/build/lib" -name MidSurface.so | head -n 1)
   [ -n "$plugin" ] || fail "the build made no MidSurface.so"
 }
 

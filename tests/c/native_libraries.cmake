@@ -20,7 +20,6 @@ if (NOT needed)
   message(FATAL_ERROR "rustc named no native library in ${list_file}")
 endif ()
 
-list(TRANSFORM LINKED REPLACE "^Threads::Threads$" "pthread")
 set(known ${LINKED} ${IMPLICIT})
 foreach (flag IN LISTS needed)
   string(REGEX REPLACE "^-l" "" library "${flag}")

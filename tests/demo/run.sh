@@ -3,7 +3,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 . scripts/build.sh
-export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/build/cargo}"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 passed=0
