@@ -1,11 +1,13 @@
 //! How well a mesh matches the mid-surface it should be.
 
-use std::collections::HashMap;
 use std::fmt;
 
+use crate::accuracy::{accuracy, coverage};
+use crate::junction::widest_gap;
 use crate::phantom::Phantom;
-use crate::topology::{connectivity, Connectivity};
-use crate::vector::{add, cross, dot, length, scale, sub, Vec3};
+use crate::topology::{closed_inward, connectivity, Connectivity};
+use crate::triangle_shape::{area, shapes};
+use crate::vector::Vec3;
 
 /// What the judge found. Lengths are in voxels: the finest spacing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,31 +20,66 @@ pub struct Report {
     pub rms: f64,
     /// Largest distance of the mesh to the truth.
     pub max_error: f64,
+    /// As `rms`, but only farther than [`crate::INSIDE`] from rims and the border.
+    pub rms_inside: f64,
+    /// As `max_error`, but only farther than [`crate::INSIDE`] from rims and the border.
+    pub max_inside: f64,
     /// Mean signed distance of the mesh to the truth, positive on the side of its normal: a bias.
     pub mean_signed: f64,
+    /// Mean angle between the triangles' normals and the true normal, degrees, sign ignored.
+    pub normal_error: f64,
+    /// Area farther than 1 voxel from the truth, square voxels: walls that should not be there.
+    pub stray_area: f64,
     /// Share of the truth, 0 to 1, that lies within 1 voxel of the mesh.
     pub covered_within_1: f64,
+    /// Share of the truth, 0 to 1, that lies within 0.6 voxel of the mesh.
+    pub covered_within_06: f64,
+    /// Distance of the point of the truth that is farthest from the mesh; infinite for no mesh.
+    pub farthest: f64,
+    /// Widest gap between a junction's line and one of its sheets; `None` without a junction.
+    pub junction_gap: Option<f64>,
     /// Topology and faults of the connectivity.
     pub connectivity: Connectivity,
+    /// Closed components whose normals point inward.
+    pub closed_inward: usize,
     /// Triangles with a repeated vertex, a point that is no number, or no area.
     pub degenerate: usize,
+    /// Mean edge length.
+    pub edge_mean: f64,
+    /// Smallest 6/√3 · area / (half perimeter · longest edge).
+    pub quality_least: f64,
     /// Mean of 6/√3 · area / (half perimeter · longest edge): 1 for equilateral triangles.
     pub quality_mean: f64,
     /// Mean of each triangle's smallest angle, degrees.
     pub smallest_angle_mean: f64,
+    /// Smallest angle anywhere, degrees.
+    pub smallest_angle: f64,
+    /// Number of angles under 25°.
+    pub angles_under_25: usize,
+    /// Number of angles under 30°.
+    pub angles_under_30: usize,
+    /// Number of angles over 120°.
+    pub angles_over_120: usize,
 }
 
 impl Report {
     /// Whether the mesh is a consistently wound 2-manifold with boundary, without waste.
     pub fn is_clean(&self) -> bool {
+        self.faults().iter().all(|(count, _)| *count == 0)
+    }
+
+    /// What no mesh may have, and how often this one has it.
+    pub fn faults(&self) -> [(usize, &'static str); 7] {
         let c = &self.connectivity;
-        let faults = c.nonmanifold_edges
-            + c.pinched_vertices
-            + c.misoriented_edges
-            + c.duplicate_triangles
-            + c.unused_points
-            + self.degenerate;
-        faults == 0
+        [
+            (c.nonmanifold_edges, "non-manifold edges"),
+            (c.pinched_vertices, "pinched vertices"),
+            (c.misoriented_edges, "misoriented edges"),
+            (c.duplicate_triangles, "duplicate triangles"),
+            (c.unused_points, "unused points"),
+            (self.degenerate, "degenerate triangles"),
+            (self.closed_inward, "closed components wound inward"),
+        ]
     }
 }
 
@@ -51,28 +88,33 @@ impl fmt::Display for Report {
         let c = &self.connectivity;
         write!(
             f,
-            "{:6} points {:6} triangles, rms {:.3} max {:.2} bias {:+.3}, covered {:6.2} %, \
-             {} components, Euler {}, {} loops, Q {:.3}, angle {:.1}",
-            self.points,
+            "{:6} triangles, rms {:.3} max {:.2} (inside {:.3} {:.2}) bias {:+.3} normals {:.1}°, \
+             covered {:.2}/{:.2} % far {:.2}, {} components Euler {} loops {}, \
+             Q {:.3} min {:.2} angle {:.1} min {:.0}, V567 {:.1} V6 {:.0} %",
             self.triangles,
             self.rms,
             self.max_error,
+            self.rms_inside,
+            self.max_inside,
             self.mean_signed,
+            self.normal_error,
             100.0 * self.covered_within_1,
+            100.0 * self.covered_within_06,
+            self.farthest,
             c.topology.components,
             c.topology.euler,
             c.topology.boundary_loops,
             self.quality_mean,
+            self.quality_least,
             self.smallest_angle_mean,
+            self.smallest_angle,
+            100.0 * c.valence_567,
+            100.0 * c.valence_6,
         )?;
-        for (count, fault) in [
-            (c.nonmanifold_edges, "non-manifold edges"),
-            (c.pinched_vertices, "pinched vertices"),
-            (c.misoriented_edges, "misoriented edges"),
-            (c.duplicate_triangles, "duplicate triangles"),
-            (c.unused_points, "unused points"),
-            (self.degenerate, "degenerate triangles"),
-        ] {
+        if let Some(gap) = self.junction_gap {
+            write!(f, ", gap {gap:.2} stray {:.1}", self.stray_area)?;
+        }
+        for (count, fault) in self.faults() {
             if count > 0 {
                 write!(f, ", {count} {fault}")?;
             }
@@ -87,179 +129,39 @@ impl fmt::Display for Report {
 /// Where a triangle names a point that does not exist.
 pub fn judge(points: &[[f32; 3]], triangles: &[[u32; 3]], phantom: &Phantom) -> Report {
     let unit = phantom.frame.unit();
-    let corners: Vec<[Vec3; 3]> = triangles
-        .iter()
-        .map(|t| t.map(|v| points[v as usize].map(f64::from)))
-        .collect();
-    let (sound, degenerate): (Vec<_>, Vec<_>) = corners
-        .iter()
-        .copied()
-        .partition(|t| area(t) > 1e-9 * unit * unit);
+    let places: Vec<Vec3> = points.iter().map(|p| p.map(f64::from)).collect();
+    let corners = triangles.iter().map(|t| t.map(|v| places[v as usize]));
+    let sound: Vec<[Vec3; 3]> = corners.filter(|t| area(t) > 1e-9 * unit * unit).collect();
     let accuracy = accuracy(&sound, phantom);
+    let coverage = coverage(&sound, phantom);
+    let shapes = shapes(&sound);
     Report {
         points: points.len(),
         triangles: triangles.len(),
         rms: accuracy.rms,
-        max_error: accuracy.max,
+        max_error: accuracy.max_error,
+        rms_inside: accuracy.rms_inside,
+        max_inside: accuracy.max_inside,
         mean_signed: accuracy.mean_signed,
-        covered_within_1: coverage(&sound, phantom),
+        normal_error: accuracy.normal_error,
+        stray_area: accuracy.stray_area,
+        covered_within_1: coverage.within_1,
+        covered_within_06: coverage.within_06,
+        farthest: coverage.farthest,
+        junction_gap: phantom
+            .junction
+            .as_ref()
+            .map(|junction| widest_gap(&sound, junction, &phantom.frame)),
         connectivity: connectivity(points.len(), triangles),
-        degenerate: degenerate.len(),
-        quality_mean: mean(sound.iter().map(quality)),
-        smallest_angle_mean: mean(sound.iter().map(smallest_angle)),
+        closed_inward: closed_inward(&places, triangles),
+        degenerate: triangles.len() - sound.len(),
+        edge_mean: shapes.edge_mean / unit,
+        quality_least: shapes.quality_least,
+        quality_mean: shapes.quality_mean,
+        smallest_angle_mean: shapes.smallest_angle_mean,
+        smallest_angle: shapes.smallest_angle,
+        angles_under_25: shapes.angles_under_25,
+        angles_under_30: shapes.angles_under_30,
+        angles_over_120: shapes.angles_over_120,
     }
-}
-
-struct Accuracy {
-    rms: f64,
-    max: f64,
-    mean_signed: f64,
-}
-
-/// Distances of points spread evenly over each triangle, at least 4 a square voxel, weighted by
-/// the area they stand for.
-fn accuracy(triangles: &[[Vec3; 3]], phantom: &Phantom) -> Accuracy {
-    let unit = phantom.frame.unit();
-    let (mut weight, mut squares, mut signed, mut max) = (0.0, 0.0, 0.0, f64::NAN);
-    for t in triangles {
-        let area = area(t) / (unit * unit);
-        let count = (4.0 * area).ceil() as usize;
-        let share = area / count as f64;
-        for p in spread(t, count) {
-            let (closest, _) = phantom.closest(p);
-            let distance = closest.distance / unit;
-            weight += share;
-            squares += share * distance * distance;
-            signed += share * closest.offset / unit;
-            max = distance.max(max);
-        }
-    }
-    Accuracy {
-        rms: (squares / weight).sqrt(),
-        max,
-        mean_signed: signed / weight,
-    }
-}
-
-/// `count` points spread over a triangle: the R2 sequence, folded from the unit square.
-fn spread(t: &[Vec3; 3], count: usize) -> impl Iterator<Item = Vec3> {
-    let (a, ab, ac) = (t[0], sub(t[1], t[0]), sub(t[2], t[0]));
-    (0..count).map(move |i| {
-        let n = i as f64 + 1.0;
-        let (mut u, mut v) = if count == 1 {
-            (1.0 / 3.0, 1.0 / 3.0)
-        } else {
-            ((n * 0.754_877_666_2).fract(), (n * 0.569_840_290_9).fract())
-        };
-        if u + v > 1.0 {
-            (u, v) = (1.0 - u, 1.0 - v);
-        }
-        add(a, add(scale(u, ab), scale(v, ac)))
-    })
-}
-
-/// Share of the truth within one voxel of a triangle.
-fn coverage(triangles: &[[Vec3; 3]], phantom: &Phantom) -> f64 {
-    let reach = phantom.frame.unit();
-    let nearby = Nearby::new(triangles, reach);
-    let samples = phantom.truth_samples(reach);
-    mean(
-        samples
-            .iter()
-            .map(|&p| f64::from(u8::from(nearby.reaches(p)))),
-    )
-}
-
-/// Triangles by the cells of a grid that they come within `reach` of, so that a query looks into
-/// one cell only.
-struct Nearby<'a> {
-    triangles: &'a [[Vec3; 3]],
-    reach: f64,
-    cells: HashMap<[i64; 3], Vec<usize>>,
-}
-
-impl<'a> Nearby<'a> {
-    fn new(triangles: &'a [[Vec3; 3]], reach: f64) -> Self {
-        let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
-        for (index, t) in triangles.iter().enumerate() {
-            let least = |a: usize| t[0][a].min(t[1][a]).min(t[2][a]) - reach;
-            let most = |a: usize| t[0][a].max(t[1][a]).max(t[2][a]) + reach;
-            let [x, y, z] = [0, 1, 2].map(|a| cell_of(least(a), reach)..=cell_of(most(a), reach));
-            for k in z {
-                for j in y.clone() {
-                    for i in x.clone() {
-                        cells.entry([i, j, k]).or_default().push(index);
-                    }
-                }
-            }
-        }
-        Self {
-            triangles,
-            reach,
-            cells,
-        }
-    }
-
-    fn reaches(&self, p: Vec3) -> bool {
-        let cell = p.map(|v| cell_of(v, self.reach));
-        self.cells.get(&cell).is_some_and(|found| {
-            found
-                .iter()
-                .any(|&t| distance_to_triangle(p, &self.triangles[t]) <= self.reach)
-        })
-    }
-}
-
-fn cell_of(coordinate: f64, side: f64) -> i64 {
-    (coordinate / (2.0 * side)).floor() as i64
-}
-
-/// Exact distance of a point from a triangle with an area: from its plane where the foot lies
-/// inside, else from the nearest edge.
-pub fn distance_to_triangle(p: Vec3, t: &[Vec3; 3]) -> f64 {
-    let normal = cross(sub(t[1], t[0]), sub(t[2], t[0]));
-    let inside = (0..3).all(|i| {
-        let edge = sub(t[(i + 1) % 3], t[i]);
-        dot(cross(edge, sub(p, t[i])), normal) >= 0.0
-    });
-    if inside {
-        return dot(sub(p, t[0]), normal).abs() / length(normal);
-    }
-    (0..3)
-        .map(|i| distance_to_segment(p, t[i], t[(i + 1) % 3]))
-        .fold(f64::INFINITY, f64::min)
-}
-
-fn distance_to_segment(p: Vec3, a: Vec3, b: Vec3) -> f64 {
-    let (ap, ab) = (sub(p, a), sub(b, a));
-    let t = (dot(ap, ab) / dot(ab, ab)).clamp(0.0, 1.0);
-    length(sub(ap, scale(t, ab)))
-}
-
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0), |(sum, count), v| (sum + v, count + 1));
-    sum / f64::from(count)
-}
-
-fn area(t: &[Vec3; 3]) -> f64 {
-    0.5 * length(cross(sub(t[1], t[0]), sub(t[2], t[0])))
-}
-
-fn sides(t: &[Vec3; 3]) -> [f64; 3] {
-    let mut sides = [0, 1, 2].map(|i| length(sub(t[(i + 1) % 3], t[i])));
-    sides.sort_by(f64::total_cmp);
-    sides
-}
-
-fn quality(t: &[Vec3; 3]) -> f64 {
-    let [a, b, c] = sides(t);
-    6.0 / 3f64.sqrt() * area(t) / (0.5 * (a + b + c) * c)
-}
-
-fn smallest_angle(t: &[Vec3; 3]) -> f64 {
-    let [a, b, c] = sides(t);
-    ((b * b + c * c - a * a) / (2.0 * b * c))
-        .clamp(-1.0, 1.0)
-        .acos()
-        .to_degrees()
 }

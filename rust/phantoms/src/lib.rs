@@ -5,20 +5,36 @@
 //! maker says about it. [`mitochondrion`] makes a label volume to look at.
 #![forbid(unsafe_code)]
 
+mod accuracy;
 mod catalogue;
+mod dice;
+mod gyroid;
 mod image_file;
 mod judge;
+mod junction;
+mod mesh_file;
 mod mitochondrion;
 mod phantom;
+mod profile;
 mod shape;
 mod topology;
+mod trials;
+mod triangle_shape;
+mod triangle_tree;
 mod vector;
 
+pub use accuracy::{Accuracy, Coverage, INSIDE};
 pub use catalogue::*;
+pub use dice::Dice;
 pub use image_file::{write_mrc, write_vti};
-pub use judge::{distance_to_triangle, judge, Report};
+pub use judge::{judge, Report};
+pub use mesh_file::write_ply;
 pub use mitochondrion::{mitochondrion, INNER, OUTER};
-pub use phantom::{flip_boundary, Frame, Phantom, Slab, Thickness, Topology};
+pub use phantom::{flip_boundary, Frame, Junction, Neighbours, Phantom, Slab, Thickness, Topology};
+pub use profile::{Profile, Vec2};
 pub use shape::{Closest, Hole, Rim, Shape};
-pub use topology::{connectivity, Connectivity};
+pub use topology::{closed_inward, connectivity, Connectivity};
+pub use trials::{trials, Grades, Limits, Trial};
+pub use triangle_shape::{shapes, Shapes};
+pub use triangle_tree::distance_to_triangle;
 pub use vector::{leaning, Vec3};

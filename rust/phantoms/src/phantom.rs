@@ -1,7 +1,7 @@
 //! Label volumes made from known mid-surfaces.
 
 use crate::shape::{Closest, Shape};
-use crate::vector::{add, dot, sub, Vec3};
+use crate::vector::{add, dot, length, scale, sub, Vec3};
 
 /// Where the voxels lie: world = origin + direction · (spacing ∘ (extent_start + index)).
 #[derive(Debug, Clone, PartialEq)]
@@ -61,6 +61,14 @@ impl Frame {
         self.spacing.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
+    /// How far inside the outermost voxel centres a world point lies; negative outside.
+    pub fn from_border(&self, world: Vec3) -> f64 {
+        let index = self.index(world);
+        (0..3)
+            .map(|a| index[a].min(self.dimensions[a] as f64 - 1.0 - index[a]) * self.spacing[a])
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether a world point lies between the outermost voxel centres.
     pub fn holds(&self, world: Vec3) -> bool {
         let index = self.index(world);
@@ -74,6 +82,9 @@ impl Frame {
 pub enum Thickness {
     /// Everywhere the same.
     Constant(f64),
+    /// As thin as voxels can be without a hole, one layer of them: neighbours share a face (6) or
+    /// at least a corner (26).
+    OneVoxel(Neighbours),
     /// `from` at the point `start`, `to` at `start + along`, linear in between, constant beyond.
     Linear {
         from: f64,
@@ -83,11 +94,30 @@ pub enum Thickness {
     },
 }
 
+/// Which voxels hang together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Neighbours {
+    Six,
+    TwentySix,
+}
+
 impl Thickness {
-    /// The thickness at a point.
-    pub fn at(&self, p: Vec3) -> f64 {
+    /// The thickness at a point of a mid-surface whose unit normal there is given.
+    pub fn at(&self, p: Vec3, normal: Vec3, frame: &Frame) -> f64 {
         match *self {
             Thickness::Constant(t) => t,
+            Thickness::OneVoxel(neighbours) => {
+                let step = |axis: usize| {
+                    let along: f64 = (0..3).map(|r| frame.direction[r][axis] * normal[r]).sum();
+                    along.abs() * frame.spacing[axis]
+                };
+                let steps = [0, 1, 2].map(step);
+                match neighbours {
+                    Neighbours::Six => steps.iter().sum(),
+                    Neighbours::TwentySix => steps.into_iter().fold(0.0, f64::max),
+                }
+            }
             Thickness::Linear {
                 from,
                 to,
@@ -97,6 +127,15 @@ impl Thickness {
                 let t = (dot(sub(p, start), along) / dot(along, along)).clamp(0.0, 1.0);
                 from + t * (to - from)
             }
+        }
+    }
+
+    /// The greatest thickness anywhere.
+    fn most(&self, frame: &Frame) -> f64 {
+        match *self {
+            Thickness::Constant(t) => t,
+            Thickness::OneVoxel(_) => length(frame.spacing),
+            Thickness::Linear { from, to, .. } => from.max(to),
         }
     }
 }
@@ -121,6 +160,27 @@ pub struct Topology {
     pub boundary_loops: usize,
 }
 
+impl std::fmt::Display for Topology {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(
+            f,
+            "{}/{}/{}",
+            self.components, self.euler, self.boundary_loops
+        )
+    }
+}
+
+/// Where sheets meet along a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Junction {
+    /// A point of the line.
+    pub point: Vec3,
+    /// The line's direction.
+    pub along: Vec3,
+    /// The direction in which each sheet runs from the line, at right angles to it.
+    pub sheets: Vec<Vec3>,
+}
+
 /// A label volume and the mid-surface it was made from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Phantom {
@@ -135,29 +195,30 @@ pub struct Phantom {
     /// Topology of the mid-surface within the volume; `None` where it is not a surface (branches)
     /// or not known (gyroids).
     pub topology: Option<Topology>,
+    /// Where the slabs meet, if they do.
+    pub junction: Option<Junction>,
 }
 
 impl Phantom {
     /// Labels every voxel whose centre is within half a thickness of a mid-surface, along the
     /// normal. Slabs end flat at a rim, so that the rim of the truth is the rim of the label.
     pub fn new(name: &str, frame: Frame, slabs: Vec<Slab>, topology: Option<Topology>) -> Self {
-        let [nx, ny, nz] = frame.dimensions;
-        let mut labels = Vec::with_capacity(nx * ny * nz);
-        for z in 0..nz {
-            for y in 0..ny {
-                for x in 0..nx {
-                    let p = frame.world([x as f64, y as f64, z as f64]);
-                    labels.push(label_at(&slabs, p));
-                }
-            }
-        }
+        let labels = label_voxels(&frame, &slabs);
         Self {
             name: name.to_owned(),
             frame,
             labels,
             slabs,
             topology,
+            junction: None,
         }
+    }
+
+    /// Tells where the slabs meet.
+    #[must_use]
+    pub fn with_junction(mut self, junction: Junction) -> Self {
+        self.junction = Some(junction);
+        self
     }
 
     /// Flips this share of the voxels that touch a face of a label (6 neighbours): labelled ones
@@ -186,18 +247,23 @@ impl Phantom {
         let counts: [usize; 3] = std::array::from_fn(|a| {
             ((frame.dimensions[a] - 1) as f64 * frame.spacing[a] / step).floor() as usize + 1
         });
+        let place = |n: [usize; 3]| {
+            frame.world(std::array::from_fn(|a| {
+                n[a] as f64 * step / frame.spacing[a]
+            }))
+        };
         let mut samples = Vec::new();
         for slab in &self.slabs {
-            for k in 0..counts[2] {
-                for j in 0..counts[1] {
-                    for i in 0..counts[0] {
-                        let steps = [i, j, k].map(|n| n as f64 * step);
-                        let index = std::array::from_fn(|a| steps[a] / frame.spacing[a]);
-                        let closest = slab.shape.closest(frame.world(index));
-                        let near = closest.offset > -0.5 * step && closest.offset <= 0.5 * step;
-                        if near && closest.distance <= step && frame.holds(closest.point) {
-                            samples.push(closest.point);
-                        }
+            for block in blocks(counts) {
+                let (middle, radius) = block.ball(place);
+                if slab.shape.least_distance(middle) > radius + step {
+                    continue;
+                }
+                for n in block.indices() {
+                    let closest = slab.shape.closest(place(n));
+                    let near = closest.offset > -0.5 * step && closest.offset <= 0.5 * step;
+                    if near && closest.distance <= step && frame.holds(closest.point) {
+                        samples.push(closest.point);
                     }
                 }
             }
@@ -206,11 +272,81 @@ impl Phantom {
     }
 }
 
-fn label_at(slabs: &[Slab], p: Vec3) -> u8 {
+/// A few neighbouring places of a grid.
+struct Block {
+    first: [usize; 3],
+    end: [usize; 3],
+}
+
+impl Block {
+    /// Middle and radius of a ball round all places of the block; `place` is affine.
+    fn ball(&self, place: impl Fn([usize; 3]) -> Vec3) -> (Vec3, f64) {
+        let (first, last) = (place(self.first), place(self.end.map(|n| n - 1)));
+        let middle = scale(0.5, add(first, last));
+        let corners = (0..8).map(|c| {
+            place([0, 1, 2].map(|a| {
+                if c >> a & 1 == 0 {
+                    self.first[a]
+                } else {
+                    self.end[a] - 1
+                }
+            }))
+        });
+        let radius = corners.fold(0.0, |r: f64, corner| r.max(length(sub(corner, middle))));
+        (middle, radius)
+    }
+
+    fn indices(&self) -> impl Iterator<Item = [usize; 3]> {
+        let [x, y, z] = [0, 1, 2].map(|a| self.first[a]..self.end[a]);
+        z.flat_map(move |k| {
+            let x = x.clone();
+            y.clone()
+                .flat_map(move |j| x.clone().map(move |i| [i, j, k]))
+        })
+    }
+}
+
+/// Cuts a grid into blocks, so that what is far from every surface is seen at one look.
+fn blocks(counts: [usize; 3]) -> impl Iterator<Item = Block> {
+    const SIDE: usize = 6;
+    let [nx, ny, nz] = counts.map(|n| n.div_ceil(SIDE));
+    (0..nx * ny * nz).map(move |b| {
+        let first = [b % nx, b / nx % ny, b / nx / ny].map(|n| n * SIDE);
+        let end = std::array::from_fn(|a| (first[a] + SIDE).min(counts[a]));
+        Block { first, end }
+    })
+}
+
+fn label_voxels(frame: &Frame, slabs: &[Slab]) -> Vec<u8> {
+    let [nx, ny, _] = frame.dimensions;
+    let mut labels = vec![0; frame.dimensions.iter().product()];
+    let place = |n: [usize; 3]| frame.world(n.map(|n| n as f64));
+    for block in blocks(frame.dimensions) {
+        let (middle, radius) = block.ball(place);
+        let near: Vec<&Slab> = slabs
+            .iter()
+            .filter(|slab| {
+                let reach = radius + 0.5 * slab.thickness.most(frame);
+                slab.shape.least_distance(middle) <= reach
+            })
+            .collect();
+        if near.is_empty() {
+            continue;
+        }
+        for [x, y, z] in block.indices() {
+            labels[x + nx * (y + ny * z)] = label_at(frame, &near, place([x, y, z]));
+        }
+    }
+    labels
+}
+
+fn label_at(frame: &Frame, slabs: &[&Slab], p: Vec3) -> u8 {
     slabs
         .iter()
         .map(|slab| (slab.shape.closest(p), slab))
-        .filter(|(c, slab)| c.within_rim && c.offset.abs() <= 0.5 * slab.thickness.at(p))
+        .filter(|(c, slab)| {
+            c.within_rim && c.offset.abs() <= 0.5 * slab.thickness.at(p, c.normal, frame)
+        })
         .min_by(|a, b| a.0.distance.total_cmp(&b.0.distance))
         .map_or(0, |(_, slab)| slab.label)
 }

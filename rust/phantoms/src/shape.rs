@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::vector::{add, dot, length, perpendicular, scale, sub, unit, Vec3};
+use crate::gyroid::{closest_on_gyroid, least_distance};
+use crate::profile::Profile;
+use crate::vector::{add, cross, dot, length, perpendicular, scale, sub, unit, Vec3};
 
 /// A mid-surface, world units. Tubes, planes without a rim and gyroids have no end.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +41,29 @@ pub enum Shape {
     },
     /// sin x cos y + sin y cos z + sin z cos x = 0, one turn a `period`.
     Gyroid { centre: Vec3, period: f64 },
+    /// A profile turned round `axis`: its x is the distance from the axis, its y the height above
+    /// `centre`. Offsets are positive to the left of the profile.
+    Revolved {
+        centre: Vec3,
+        axis: Vec3,
+        profile: Profile,
+    },
+    /// A profile drawn along the third direction: its x runs along `across`, its y along `up`,
+    /// both counted from `centre`. Offsets are positive to the left of the profile.
+    Extruded {
+        centre: Vec3,
+        across: Vec3,
+        up: Vec3,
+        profile: Profile,
+    },
+    /// A tube round a profile, which lies in the plane as that of [`Shape::Extruded`] does.
+    BentTube {
+        centre: Vec3,
+        across: Vec3,
+        up: Vec3,
+        path: Profile,
+        radius: f64,
+    },
 }
 
 /// Where a plane ends.
@@ -71,6 +96,10 @@ pub struct Closest {
     /// Signed distance from the surface continued beyond its rim; positive on the side of the
     /// normal (outside of spheres, tori and tubes).
     pub offset: f64,
+    /// Unit normal of the surface at `point`, to the side where offsets are positive.
+    pub normal: Vec3,
+    /// Length along the surface from `point` to its nearest rim; infinite without a rim.
+    pub from_rim: f64,
     /// Whether the given point lies above or below the surface, not beyond its rim.
     pub within_rim: bool,
 }
@@ -115,6 +144,40 @@ impl Shape {
                 ref holes,
             } => closest_on_plane(p, centre, unit(normal), rim, holes),
             Shape::Gyroid { centre, period } => closest_on_gyroid(p, centre, TAU / period),
+            Shape::Revolved {
+                centre,
+                axis,
+                ref profile,
+            } => closest_on_revolved(p, centre, unit(axis), profile),
+            Shape::Extruded {
+                centre,
+                across,
+                up,
+                ref profile,
+            } => closest_on_extruded(p, centre, unit(across), unit(up), profile),
+            Shape::BentTube {
+                centre,
+                across,
+                up,
+                ref path,
+                radius,
+            } => {
+                // The nearest point of the path is that to p's shadow on the path's plane.
+                let out = cross(unit(across), unit(up));
+                let lift = scale(dot(sub(p, centre), out), out);
+                let on_path = closest_on_extruded(p, centre, unit(across), unit(up), path).point;
+                let e = add(sub(p, on_path), lift);
+                on_normal(p, length(e) - radius, unit(e))
+            }
+        }
+    }
+
+    /// A distance that the surface is at least away from p; cheaper than [`Shape::closest`] where
+    /// that is dear, and right where it may fail.
+    pub(crate) fn least_distance(&self, p: Vec3) -> f64 {
+        match *self {
+            Shape::Gyroid { centre, period } => least_distance(p, centre, TAU / period),
+            _ => self.closest(p).distance,
         }
     }
 }
@@ -124,6 +187,8 @@ fn on_normal(p: Vec3, offset: f64, normal: Vec3) -> Closest {
         point: sub(p, scale(offset, normal)),
         distance: offset.abs(),
         offset,
+        normal,
+        from_rim: f64::INFINITY,
         within_rim: true,
     }
 }
@@ -146,14 +211,20 @@ fn closest_on_cap(p: Vec3, centre: Vec3, radius: f64, axis: Vec3, opening: f64) 
     let d = sub(p, centre);
     let (from_axis, outward) = radial(d, axis);
     let whole = on_normal(p, length(d) - radius, unit(d));
-    if from_axis.atan2(dot(d, axis)) <= opening {
-        return whole;
+    let from_pole = from_axis.atan2(dot(d, axis));
+    if from_pole <= opening {
+        return Closest {
+            from_rim: radius * (opening - from_pole),
+            ..whole
+        };
     }
     let (sin, cos) = opening.sin_cos();
     let rim = add(scale(radius * cos, axis), scale(radius * sin, outward));
     Closest {
         point: add(centre, rim),
         distance: length(sub(d, rim)),
+        normal: unit(rim),
+        from_rim: 0.0,
         within_rim: false,
         ..whole
     }
@@ -177,63 +248,51 @@ fn closest_on_plane(p: Vec3, centre: Vec3, normal: Vec3, rim: Rim, holes: &[Hole
         let (from_hole, outward) = radial(sub(p, hole.centre), normal);
         outlines.push((hole.radius - from_hole, outward));
     }
-    let (beyond, back) = outlines
-        .into_iter()
-        .filter(|(beyond, _)| *beyond > 0.0)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .unwrap_or((0.0, [0.0; 3]));
+    let nearest = outlines.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+    let (past, back) = nearest.unwrap_or((f64::NEG_INFINITY, [0.0; 3]));
+    let beyond = past.max(0.0);
     Closest {
         point: add(add(centre, flat), scale(beyond, back)),
         distance: offset.hypot(beyond),
         offset,
+        normal,
+        from_rim: (-past).max(0.0),
         within_rim: beyond == 0.0,
     }
 }
 
-/// Value and gradient of the gyroid's function, k its wave number.
-fn gyroid(p: Vec3, centre: Vec3, k: f64) -> (f64, Vec3) {
-    let [(sx, cx), (sy, cy), (sz, cz)] = sub(p, centre).map(|v| (k * v).sin_cos());
-    let gradient = [cx * cy - sz * sx, cy * cz - sx * sy, cz * cx - sy * sz];
-    (sx * cy + sy * cz + sz * cx, scale(k, gradient))
-}
-
-/// The nearest point found while alternating between falling onto the surface and sliding along
-/// it towards p. Exact near the surface; half-way between two sheets it may name the farther one.
-fn closest_on_gyroid(p: Vec3, centre: Vec3, k: f64) -> Closest {
-    let mut point = fall_onto_gyroid(p, centre, k);
-    let mut best = point;
-    for _ in 0..12 {
-        let normal = unit(gyroid(point, centre, k).1);
-        let away = sub(p, point);
-        let slide = sub(away, scale(dot(away, normal), normal));
-        if length(slide) < 1e-6 / k {
-            break;
-        }
-        let step = (0.4 / k / length(slide)).min(1.0);
-        point = fall_onto_gyroid(add(point, scale(step, slide)), centre, k);
-        if length(sub(p, point)) < length(sub(p, best)) {
-            best = point;
-        }
-    }
-    let distance = length(sub(p, best));
+fn closest_on_revolved(p: Vec3, centre: Vec3, axis: Vec3, profile: &Profile) -> Closest {
+    let d = sub(p, centre);
+    let (from_axis, outward) = radial(d, axis);
+    let foot = profile.closest([from_axis, dot(d, axis)]);
+    let place = |v: [f64; 2]| add(scale(v[0], outward), scale(v[1], axis));
     Closest {
-        point: best,
-        distance,
-        offset: distance.copysign(gyroid(p, centre, k).0),
-        within_rim: true,
+        point: add(centre, place(foot.point)),
+        distance: foot.distance,
+        offset: foot.offset,
+        normal: place(foot.left),
+        from_rim: foot.from_rim,
+        within_rim: foot.within_rim,
     }
 }
 
-/// Newton's method along the gradient, in steps short enough not to jump to another sheet.
-fn fall_onto_gyroid(mut point: Vec3, centre: Vec3, k: f64) -> Vec3 {
-    for _ in 0..30 {
-        let (value, gradient) = gyroid(point, centre, k);
-        if value.abs() < 1e-9 {
-            break;
-        }
-        let longest = 0.3 / k;
-        let step = (value / length(gradient)).clamp(-longest, longest);
-        point = sub(point, scale(step, unit(gradient)));
+fn closest_on_extruded(
+    p: Vec3,
+    centre: Vec3,
+    across: Vec3,
+    up: Vec3,
+    profile: &Profile,
+) -> Closest {
+    let d = sub(p, centre);
+    let flat = [dot(d, across), dot(d, up)];
+    let foot = profile.closest(flat);
+    let place = |v: [f64; 2]| add(scale(v[0], across), scale(v[1], up));
+    Closest {
+        point: add(sub(p, place(flat)), place(foot.point)),
+        distance: foot.distance,
+        offset: foot.offset,
+        normal: place(foot.left),
+        from_rim: foot.from_rim,
+        within_rim: foot.within_rim,
     }
-    point
 }
