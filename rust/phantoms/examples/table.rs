@@ -12,7 +12,10 @@ use std::time::Instant;
 use midsurface::{extract, Grid, Mesh, Method, Options, Quiet, Volume};
 use phantoms::{judge, trials, write_ply, write_vti, Frame, Phantom, Trial};
 
-const METHODS: &[(&str, Method)] = &[("zipper", Method::PolylineZipper)];
+const METHODS: &[(&str, Method)] = &[
+    ("zipper", Method::PolylineZipper),
+    ("ridge", Method::RidgeSurface),
+];
 
 const HELP: &str = "\
 Usage: table [OPTION...] [PART OF A NAME...]
@@ -25,6 +28,7 @@ Lines end with MISS and what falls short of what a mesh must be, or with `below 
   --clean          only without noise
   --noisy          only with noise
   --misses         print only the lines with a MISS
+  --edge LENGTH    edge length to aim at, world units (default: automatic)
   --threads N      worker threads (default: one a core)
   --write FOLDER   write each volume (.vti) and mesh (.ply) there
 ";
@@ -34,6 +38,7 @@ struct Arguments {
     seeds: std::ops::Range<u64>,
     noise: Vec<bool>,
     only_misses: bool,
+    edge_length: f64,
     threads: usize,
     folder: Option<PathBuf>,
     names: Vec<String>,
@@ -71,6 +76,7 @@ fn arguments() -> Result<Option<Arguments>, Box<dyn Error>> {
         seeds: 1..3,
         noise: vec![false, true],
         only_misses: false,
+        edge_length: 0.0,
         threads: 0,
         folder: None,
         names: Vec::new(),
@@ -91,6 +97,7 @@ fn arguments() -> Result<Option<Arguments>, Box<dyn Error>> {
             "--clean" => found.noise = vec![false],
             "--noisy" => found.noise = vec![true],
             "--misses" => found.only_misses = true,
+            "--edge" => found.edge_length = value()?.parse()?,
             "--threads" => found.threads = value()?.parse()?,
             "--write" => found.folder = Some(value()?.into()),
             _ if word.starts_with("--") => return Err(format!("unknown option {word}").into()),
@@ -118,6 +125,7 @@ fn run(
     let options = Options {
         method: arguments.method,
         threads: arguments.threads,
+        edge_length: arguments.edge_length,
         ..Options::default()
     };
     let start = Instant::now();

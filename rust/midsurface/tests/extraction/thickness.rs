@@ -89,7 +89,11 @@ fn a_wedge_is_as_thick_as_it_is() {
             .sqrt();
         if from_middle < 16.0 {
             let (closest, slab) = phantom.closest(p);
-            errors += (f64::from(t) - slab.thickness.at(closest.point)).abs();
+            errors += (f64::from(t)
+                - slab
+                    .thickness
+                    .at(closest.point, closest.normal, &phantom.frame))
+            .abs();
             count += 1;
         }
     }

@@ -131,7 +131,7 @@ impl Limits {
             ("V6", report.connectivity.valence_6, self.valence_6),
         ];
         for (column, value, least) in shape {
-            if !(value >= least) {
+            if value.is_nan() || value < least {
                 miss(column, format!("{column} {value:.3} < {least}"));
             }
         }
@@ -155,7 +155,7 @@ impl Limits {
         let missed = lengths
             .into_iter()
             .map(|(column, value, most)| (column, value, most * coarsest))
-            .filter(|(_, value, most)| most.is_finite() && !(value <= most));
+            .filter(|(_, value, most)| most.is_finite() && (value.is_nan() || value > most));
         missed
             .map(|(column, value, most)| (column, format!("{column} {value:.3} > {most:.3}")))
             .collect()
