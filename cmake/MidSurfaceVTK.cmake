@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 find_package(VTK 9.1 REQUIRED
-  COMPONENTS CommonCore CommonDataModel CommonExecutionModel
+  COMPONENTS CommonCore CommonDataModel CommonExecutionModel ParallelCore
   OPTIONAL_COMPONENTS WrappingPythonCore)
 
 set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/MidSurface")

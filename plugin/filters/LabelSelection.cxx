@@ -50,11 +50,57 @@ bool ReadLabels(const SegmentationVolume& volume, int threads, std::vector<int64
     return false;
   }
 }
+
+/** The names of a block come before those of the whole. */
+void ReadNames(LabelTable& table, vtkDataObject* input)
+{
+  for (vtkImageData* image : ListImages(input))
+  {
+    table.ReadNames(image->GetFieldData());
+  }
+  if (input)
+  {
+    table.ReadNames(input->GetFieldData());
+  }
+}
 } // namespace
 
 //------------------------------------------------------------------------------
 void LabelSelection::Update(
   const ArrayFinder& find, vtkMTimeType choiceTime, vtkDataObject* input, int threads)
+{
+  LabelTable table;
+  try
+  {
+    std::vector<ScannedArray> arrays = this->Scan(find, input, threads);
+    for (const ScannedArray& scanned : arrays)
+    {
+      table.Add(scanned.Labels);
+    }
+    this->Scanned = arrays.empty() ? std::move(this->Scanned) : std::move(arrays);
+    ReadNames(table, input);
+  }
+  catch (const std::exception&)
+  {
+    // The run that follows meets it again and says so. The other processes wait for this one.
+  }
+  table.GatherFromAllProcesses();
+  if (table.IsKnown())
+  {
+    this->Table = std::move(table);
+    this->FoundChoiceTime = choiceTime;
+    this->RefreshTicks();
+    this->Found->RemoveAllArrays();
+    for (const auto& entry : this->Table.Entries())
+    {
+      this->Found->AddArray(LabelTable::Text(entry).c_str(), this->IsTicked(entry.first));
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<LabelSelection::ScannedArray> LabelSelection::Scan(
+  const ArrayFinder& find, vtkDataObject* input, int threads) const
 {
   std::vector<ScannedArray> arrays;
   for (vtkImageData* image : ListImages(input))
@@ -78,65 +124,55 @@ void LabelSelection::Update(
       arrays.push_back(std::move(scanned));
     }
   }
-  if (!arrays.empty())
-  {
-    this->Scanned = std::move(arrays);
-    this->FoundChoiceTime = choiceTime;
-    this->RefreshFound();
-  }
+  return arrays;
 }
 
 //------------------------------------------------------------------------------
-void LabelSelection::RefreshFound()
+void LabelSelection::RefreshTicks()
 {
-  std::set<int64_t> labels;
-  for (const ScannedArray& scanned : this->Scanned)
+  this->Ticks.clear();
+  for (int index = 0; index < this->Requested->GetNumberOfArrays(); ++index)
   {
-    labels.insert(scanned.Labels.begin(), scanned.Labels.end());
-  }
-  this->Found->RemoveAllArrays();
-  for (int64_t label : labels)
-  {
-    const std::string name = std::to_string(label);
-    this->Found->AddArray(name.c_str(), this->IsTicked(name));
+    for (const int64_t label : this->Table.Find(this->Requested->GetArrayName(index)))
+    {
+      bool& isTicked = this->Ticks[label];
+      isTicked = isTicked || this->Requested->GetArraySetting(index);
+    }
   }
 }
 
 //------------------------------------------------------------------------------
 void LabelSelection::RequestChanged(vtkMTimeType choiceTime)
 {
-  const int count = this->Requested->GetNumberOfArrays();
-  const int ticked = this->Requested->GetNumberOfArraysEnabled();
-  this->Request = count == 0 ? Meaning::All : Meaning::Listed;
+  this->Request = this->Requested->GetNumberOfArrays() == 0 ? Meaning::All : Meaning::Listed;
+  this->RefreshTicks();
+  const auto& found = this->Table.Entries();
   // A list of all labels of another array says nothing about this one's.
-  const bool isAboutFound =
-    count > 0 && count == this->Found->GetNumberOfArrays() && choiceTime == this->FoundChoiceTime;
-  if (!isAboutFound || (ticked != 0 && ticked != count))
+  const bool isAboutFound = !this->Ticks.empty() && choiceTime == this->FoundChoiceTime &&
+    this->Ticks.size() == found.size() &&
+    std::all_of(this->Ticks.begin(), this->Ticks.end(),
+      [this](const auto& tick) { return this->Table.Holds(tick.first); });
+  const auto isOn = [](const auto& tick) { return tick.second; };
+  if (isAboutFound && std::all_of(this->Ticks.begin(), this->Ticks.end(), isOn))
   {
-    return;
+    this->Request = Meaning::All;
   }
-  for (int index = 0; index < count; ++index)
+  else if (isAboutFound && std::none_of(this->Ticks.begin(), this->Ticks.end(), isOn))
   {
-    if (!this->Found->ArrayExists(this->Requested->GetArrayName(index)))
-    {
-      return;
-    }
+    this->Request = Meaning::None;
   }
-  this->Request = ticked ? Meaning::All : Meaning::None;
 }
 
 //------------------------------------------------------------------------------
-bool LabelSelection::IsTicked(const std::string& label) const
+bool LabelSelection::IsTicked(int64_t label) const
 {
   if (this->Request != Meaning::Listed)
   {
     return this->Request == Meaning::All;
   }
-  if (this->Requested->ArrayExists(label.c_str()))
-  {
-    return this->Requested->ArrayIsEnabled(label.c_str()) != 0;
-  }
-  return this->Requested->GetNumberOfArraysEnabled() == 0;
+  const auto tick = this->Ticks.find(label);
+  return tick != this->Ticks.end() ? tick->second
+                                   : this->Requested->GetNumberOfArraysEnabled() == 0;
 }
 
 //------------------------------------------------------------------------------
@@ -145,51 +181,58 @@ void LabelSelection::CheckPresence(const std::string& arrayName) const
   std::string absent;
   for (int index = 0; index < this->Requested->GetNumberOfArrays(); ++index)
   {
-    const char* label = this->Requested->GetArrayName(index);
-    if (this->Requested->GetArraySetting(index) && !this->Found->ArrayExists(label))
+    const char* text = this->Requested->GetArrayName(index);
+    const std::set<int64_t> labels = this->Table.Find(text);
+    const bool isPresent = std::any_of(
+      labels.begin(), labels.end(), [this](int64_t label) { return this->Table.Holds(label); });
+    if (this->Requested->GetArraySetting(index) && !isPresent)
     {
-      absent += (absent.empty() ? "" : ", ") + std::string(label);
+      absent += (absent.empty() ? "" : ", ") + std::string(text);
     }
   }
   if (absent.empty())
   {
     return;
   }
-  constexpr int shown = 20;
-  const int count = this->Found->GetNumberOfArrays();
+  constexpr size_t shown = 20;
+  const auto& found = this->Table.Entries();
   std::string present;
-  for (int index = 0; index < std::min(count, shown); ++index)
+  size_t count = 0;
+  for (auto entry = found.begin(); entry != found.end() && count < shown; ++entry, ++count)
   {
-    present += (present.empty() ? "" : ", ") + std::string(this->Found->GetArrayName(index));
+    present += (present.empty() ? "" : ", ") + LabelTable::Text(*entry);
   }
   throw std::runtime_error("Labels asks for " + absent + ", which the array \"" + arrayName +
     "\" does not hold. It holds " + (count ? present : "no label") +
-    (count > shown ? " and more." : "."));
+    (found.size() > shown ? " and more." : "."));
 }
 
 //------------------------------------------------------------------------------
 void LabelSelection::Apply(FilterRun& run, const SegmentationVolume& volume) const
 {
-  const vtkDataArray* array = volume.Array();
+  vtkDataArray* array = volume.Array();
   const auto scanned = std::find_if(this->Scanned.begin(), this->Scanned.end(),
     [array](const ScannedArray& candidate) { return candidate.Array == array; });
   const bool isReadable = scanned != this->Scanned.end() && scanned->Readable;
   // An array that cannot be read goes to the core as it is, which gives the reason.
-  if (!isReadable || this->Request == Meaning::All)
+  if (!isReadable)
   {
     return;
   }
   if (this->Request == Meaning::Listed)
   {
-    this->CheckPresence(volume.Array()->GetName() ? volume.Array()->GetName() : "");
+    this->CheckPresence(array->GetName() ? array->GetName() : "");
   }
   std::vector<int64_t> wanted;
   std::copy_if(scanned->Labels.begin(), scanned->Labels.end(), std::back_inserter(wanted),
-    [this](int64_t label) { return this->IsTicked(std::to_string(label)); });
+    [this](int64_t label) { return this->IsTicked(label); });
   if (wanted.empty() && this->Found->GetNumberOfArraysEnabled() > 0)
   {
-    // Other blocks of the input hold what is wanted, so nothing is amiss.
+    // Other blocks or processes hold what is wanted, so nothing is amiss.
     run.Options.Warning = nullptr;
   }
-  run.Options.Labels = std::move(wanted);
+  if (this->Request != Meaning::All)
+  {
+    run.Options.Labels = std::move(wanted);
+  }
 }

@@ -1,12 +1,14 @@
 #ifndef LabelSelection_h
 #define LabelSelection_h
 
+#include "LabelTable.h"
 #include "SegmentationVolume.h"
 
 #include "vtkDataArraySelection.h"
 #include "vtkNew.h"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,11 +18,12 @@ class vtkDataObject;
 /**
  * Which labels there are, and which of them are wanted.
  *
- * `Requested` is what the user ticked and unticked, by name; `Found` is the list of what the input
- * holds, each with its tick as the request leaves it. The rules:
+ * `Requested` is what the user ticked and unticked, by number or name; `Found` is the list of what
+ * the input holds, in all processes, each with its tick as the request leaves it. The rules:
  * - No request, or all that was found ticked: all labels, new ones too when the input changes.
  * - All that was found unticked: none, whatever the input becomes.
  * - Else the ticked ones; where the request only unticks, all but those.
+ * A label that is ticked by one of its texts and unticked by another is ticked.
  */
 class LabelSelection
 {
@@ -31,7 +34,7 @@ public:
   /**
    * Brings `Found` up to date with the arrays of `input`, which may be null, empty or a composite.
    * Arrays that did not change are not read again. An array that holds no labels adds none: the
-   * run that follows has to say so.
+   * run that follows has to say so. Where there are many processes, all have to call this at once.
    * @param choiceTime when the array was chosen that `find` looks up.
    */
   void Update(const ArrayFinder& find, vtkMTimeType choiceTime, vtkDataObject* input, int threads);
@@ -60,12 +63,17 @@ private:
     std::vector<int64_t> Labels;
   };
 
-  void RefreshFound();
-  bool IsTicked(const std::string& label) const;
+  std::vector<ScannedArray> Scan(const ArrayFinder& find, vtkDataObject* input, int threads) const;
+  void RefreshTicks();
+  bool IsTicked(int64_t label) const;
   void CheckPresence(const std::string& arrayName) const;
 
   Meaning Request = Meaning::All;
   std::vector<ScannedArray> Scanned;
+  /** What `Found` shows. */
+  LabelTable Table;
+  /** The labels that `Requested` means. */
+  std::map<int64_t, bool> Ticks;
   /** When the array was chosen that `Found` belongs to. */
   vtkMTimeType FoundChoiceTime = 0;
 };

@@ -6,8 +6,14 @@
  * points or on cells, 0 for background, of any numeric type. Default: the active scalars. With
  * cells the surface lies on the grid of the cell centres.
  *
- * Which labels are extracted is told by name, as in GetLabels()->EnableArray("3"). Without a
- * request, all are. A label that is asked for and not there is an error.
+ * Which labels are extracted is told by text, as in GetLabels()->EnableArray("3"). Without a
+ * request, all are. A label that is asked for and not there is an error. Field data may name the
+ * labels: the vtkStringArray `LabelNames` holds the names of the labels 0, 1, 2 and so on, or of
+ * those that the numeric array `LabelValues` lists. The text of a label is then its number, its
+ * name, or both as in "3: outer membrane".
+ *
+ * Under MPI (a vtkMultiProcessController with many processes) all processes update the filter
+ * together, since they tell each other which labels they have.
  *
  * Bad input is reported by an error or warning of the filter, and the output is empty. So it is,
  * with a warning, after an abort.
@@ -39,9 +45,10 @@ public:
   void SetInputData(vtkImageData* image);
 
   /**
-   * The labels asked for: "1", "3" and so on, on or off. Empty, the default: all labels. Where
-   * some are on: those. Where some are off and none is on: all but those. Where exactly the labels
-   * of GetFoundLabels() are on (off), it means all (none), also after the input has changed.
+   * The labels asked for: "1", "3" and so on, or their names, on or off. Empty, the default: all
+   * labels. Where some are on: those. Where some are off and none is on: all but those. Where
+   * exactly the labels of GetFoundLabels() are on (off), it means all (none), also after the input
+   * has changed.
    */
   vtkDataArraySelection* GetLabels();
 

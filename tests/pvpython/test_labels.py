@@ -1,8 +1,23 @@
 """Which labels are extracted."""
 import numpy as np
 from paraview import simple
+from paraview.vtk import vtkMultiBlockDataSet
+from paraview.vtk.util import numpy_support
+from vtkmodules.vtkCommonCore import vtkStringArray
 
 from pipeline import FilterTest, add_array, arrays, image, run_tests, sheets, source, update
+
+
+def add_names(data, names, values):
+    array = vtkStringArray()
+    array.SetName("LabelNames")
+    for name in names:
+        array.InsertNextValue(name)
+    data.GetFieldData().AddArray(array)
+    if values is not None:
+        labels = numpy_support.numpy_to_vtk(values, deep=True)
+        labels.SetName("LabelValues")
+        data.GetFieldData().AddArray(labels)
 
 
 def labels_of(proxy):
@@ -87,6 +102,97 @@ class Labels(FilterTest):
         self.assert_empty(mesh)
         self.assertEqual((len(messages.errors), len(messages.warnings)), (0, 1))
         self.assertIn("no label", messages.warnings[0])
+
+    def test_labels_of_any_kind(self):
+        """Sparse, negative and large values, as floats too, on points and on cells."""
+        for dtype, labels in (
+            (np.uint16, (1, 200, 40000)),
+            (np.int32, (-40000, -1, 5)),
+            (np.float32, (-3, 2, 40000)),
+            (np.float64, (1, 2**40, 2**53)),
+            (np.int64, (-(2**60), 7, 2**60 + 1)),
+        ):
+            for cells in (False, True):
+                proxy = simple.MidSurface(
+                    Input=source(image(sheets(dtype=dtype, labels=labels), "меm brane", cells))
+                )
+                self.assertEqual(list(proxy.Labels), [str(label) for label in labels])
+                found, messages = labels_of(proxy)
+                self.assertEqual(found, list(labels))
+                self.assertEqual(messages.errors + messages.warnings, [])
+                proxy.Labels = [str(labels[2])]
+                self.assertEqual(labels_of(proxy)[0], [labels[2]])
+
+
+class Names(FilterTest):
+    """Field data can name the labels."""
+
+    names = ("outer membrane", "Außenmembran 膜: 2", "ER")
+    listed = ["1: outer membrane", "2: Außenmembran 膜: 2", "3: ER"]
+
+    def named(self, names=("background", *names), values=None, labels=(1, 2, 3)):
+        data = image(sheets(labels=labels, dtype=np.int64))
+        add_names(data, names, values)
+        return data
+
+    def test_entry_i_names_label_i(self):
+        proxy = simple.MidSurface(Input=source(self.named()))
+        self.assertEqual(list(proxy.Labels), self.listed)
+        found, messages = labels_of(proxy)
+        self.assertEqual(found, [1, 2, 3])
+        self.assertEqual(messages.errors + messages.warnings, [])
+
+    def test_values_tell_which_labels_are_named(self):
+        for values, dtype in (((2**60, -7, 55), np.int64), ((40000, -7, 55), np.float32)):
+            data = self.named(self.names, np.array(values, dtype), (-7, values[0], 200))
+            proxy = simple.MidSurface(Input=source(data))
+            listed = ["-7: Außenmembran 膜: 2", "200", f"{values[0]}: outer membrane"]
+            self.assertEqual(sorted(proxy.Labels), sorted(listed))
+
+    def test_a_label_is_chosen_by_number_name_or_both(self):
+        proxy = simple.MidSurface(Input=source(self.named()))
+        for chosen, expected in (
+            (["2"], [2]),
+            (["ER"], [3]),
+            (["3: ER"], [3]),
+            (["Außenmembran 膜: 2", "1"], [1, 2]),
+            (["1", "2", "3"], [1, 2, 3]),
+            (["3: a former name"], [3]),
+        ):
+            proxy.Labels = chosen
+            found, messages = labels_of(proxy)
+            self.assertEqual(found, expected, chosen)
+            self.assertEqual(messages.errors + messages.warnings, [])
+
+    def test_a_missing_name_is_an_error_that_lists_the_names(self):
+        proxy = simple.MidSurface(Input=source(self.named()), Labels=["inner membrane"])
+        mesh, messages = update(proxy)
+        self.assert_empty(mesh)
+        self.assertIn("inner membrane", messages.errors[0])
+        self.assertIn(", ".join(self.listed), messages.errors[0])
+
+    def test_names_that_do_not_fit_are_left_alone(self):
+        for names, values in (
+            (("background",), None),
+            (self.names, np.array([1, 2])),
+            (self.names, np.array([1.5, np.nan, 7])),
+        ):
+            proxy = simple.MidSurface(Input=source(self.named(names, values)))
+            self.assertEqual(list(proxy.Labels), ["1", "2", "3"])
+            self.assertEqual(labels_of(proxy)[0], [1, 2, 3])
+
+    def test_names_of_a_collection(self):
+        blocks = vtkMultiBlockDataSet()
+        blocks.SetBlock(0, self.named(("", "first")))
+        blocks.SetBlock(1, image(sheets(labels=(1, 4))))
+        add_names(blocks, ("", "all", "", "", "fourth"), None)
+        proxy = simple.MidSurface(Input=source(blocks))
+        self.assertEqual(list(proxy.Labels), ["1: first", "2", "3", "4: fourth"])
+
+    def test_names_are_passed_on(self):
+        mesh, _ = update(simple.MidSurface(Input=source(self.named())))
+        kept = mesh.GetFieldData().GetAbstractArray("LabelNames")
+        self.assertEqual(kept.GetValue(3), "ER")
 
 
 class ChangingInput(FilterTest):
