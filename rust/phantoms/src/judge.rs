@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::accuracy::{accuracy, coverage};
+use crate::intersections::self_intersections;
 use crate::junction::widest_gap;
 use crate::phantom::Phantom;
 use crate::topology::{closed_inward, connectivity, Connectivity};
@@ -40,6 +41,8 @@ pub struct Report {
     pub junction_gap: Option<f64>,
     /// Topology and faults of the connectivity.
     pub connectivity: Connectivity,
+    /// Pairs of triangles that run into each other.
+    pub self_intersections: usize,
     /// Closed components whose normals point inward.
     pub closed_inward: usize,
     /// Triangles with a repeated vertex, a point that is no number, or no area.
@@ -63,13 +66,21 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether the mesh is a consistently wound 2-manifold with boundary, without waste.
+    /// Whether the mesh is a consistently wound 2-manifold with boundary, without waste. It may run
+    /// into itself.
     pub fn is_clean(&self) -> bool {
-        self.faults().iter().all(|(count, _)| *count == 0)
+        let c = &self.connectivity;
+        let faults = c.nonmanifold_edges
+            + c.pinched_vertices
+            + c.misoriented_edges
+            + c.duplicate_triangles
+            + c.unused_points
+            + self.degenerate;
+        faults == 0
     }
 
     /// What no mesh may have, and how often this one has it.
-    pub fn faults(&self) -> [(usize, &'static str); 7] {
+    pub fn faults(&self) -> [(usize, &'static str); 8] {
         let c = &self.connectivity;
         [
             (c.nonmanifold_edges, "non-manifold edges"),
@@ -78,6 +89,7 @@ impl Report {
             (c.duplicate_triangles, "duplicate triangles"),
             (c.unused_points, "unused points"),
             (self.degenerate, "degenerate triangles"),
+            (self.self_intersections, "self-intersections"),
             (self.closed_inward, "closed components wound inward"),
         ]
     }
@@ -153,6 +165,7 @@ pub fn judge(points: &[[f32; 3]], triangles: &[[u32; 3]], phantom: &Phantom) -> 
             .as_ref()
             .map(|junction| widest_gap(&sound, junction, &phantom.frame)),
         connectivity: connectivity(points.len(), triangles),
+        self_intersections: self_intersections(points, triangles).len(),
         closed_inward: closed_inward(&places, triangles),
         degenerate: triangles.len() - sound.len(),
         edge_mean: shapes.edge_mean / unit,
