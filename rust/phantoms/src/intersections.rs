@@ -49,23 +49,23 @@ fn boxes(points: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<Bounds> {
 /// share.
 fn for_each_candidate(boxes: &[Bounds], mut look: impl FnMut([u32; 2])) {
     let cells = Cells::fitting(boxes);
-    let mut entries: Vec<([i32; 3], u32)> = Vec::new();
+    let mut entries: Vec<(u64, u32)> = Vec::new();
     for (index, bounds) in boxes.iter().enumerate() {
-        let [lower, upper] = bounds.map(|corner| cells.of(corner));
+        let (lower, upper) = (cells.of(bounds[0]), cells.of(bounds[1]));
         for z in lower[2]..=upper[2] {
             for y in lower[1]..=upper[1] {
-                entries.extend((lower[0]..=upper[0]).map(|x| ([z, y, x], index as u32)));
+                entries.extend((lower[0]..=upper[0]).map(|x| (key([x, y, z]), index as u32)));
             }
         }
     }
     entries.sort_unstable();
     for in_cell in entries.chunk_by(|a, b| a.0 == b.0) {
-        for (place, &([z, y, x], a)) in in_cell.iter().enumerate() {
+        for (place, &(cell, a)) in in_cell.iter().enumerate() {
             for &(_, b) in &in_cell[place + 1..] {
-                let [p, q] = [a, b].map(|t| boxes[t as usize]);
+                let (p, q) = (&boxes[a as usize], &boxes[b as usize]);
                 let overlap = (0..3).all(|k| p[1][k] >= q[0][k] && q[1][k] >= p[0][k]);
                 let first_shared = || cells.of(std::array::from_fn(|k| p[0][k].max(q[0][k])));
-                if overlap && first_shared() == [x, y, z] {
+                if overlap && key(first_shared()) == cell {
                     look([a, b]);
                 }
             }
@@ -73,7 +73,12 @@ fn for_each_candidate(boxes: &[Bounds], mut look: impl FnMut([u32; 2])) {
     }
 }
 
-/// A grid of cubes.
+/// A number for a cell; no two cells of a mesh have the same one.
+fn key([x, y, z]: [u32; 3]) -> u64 {
+    u64::from(z) << 42 | u64::from(y) << 21 | u64::from(x)
+}
+
+/// A grid of cubes, less than 2²¹ along each axis.
 struct Cells {
     origin: Vec3,
     side: f64,
@@ -83,15 +88,19 @@ impl Cells {
     /// As fine as the mean box, coarser where long boxes would fill too many cells.
     fn fitting(boxes: &[Bounds]) -> Self {
         let mut origin = [f64::INFINITY; 3];
+        let mut end = [f64::NEG_INFINITY; 3];
         let mut extent = 0.0;
         for [lower, upper] in boxes {
             origin = std::array::from_fn(|k| origin[k].min(lower[k]));
+            end = std::array::from_fn(|k| end[k].max(upper[k]));
             extent += (0..3).map(|k| upper[k] - lower[k]).fold(0.0, f64::max);
         }
         let mean = extent / boxes.len().max(1) as f64;
+        let longest = (0..3).map(|k| end[k] - origin[k]).fold(0.0, f64::max);
+        let side = (1.5 * mean).max(longest / f64::from(1 << 20));
         let mut cells = Self {
             origin,
-            side: if mean > 0.0 { 1.5 * mean } else { 1.0 },
+            side: if side > 0.0 { side } else { 1.0 },
         };
         // Doubling the side ends: at the size of the whole mesh a box reaches into one cell.
         while boxes.iter().map(|b| cells.filled_by(b)).sum::<f64>() > 16.0 * boxes.len() as f64 {
@@ -100,8 +109,9 @@ impl Cells {
         cells
     }
 
-    fn of(&self, p: Vec3) -> [i32; 3] {
-        std::array::from_fn(|k| ((p[k] - self.origin[k]) / self.side) as i32)
+    fn of(&self, p: Vec3) -> [u32; 3] {
+        let along = |k: usize| ((p[k] - self.origin[k]) / self.side) as u32;
+        [along(0), along(1), along(2)]
     }
 
     /// About how many cells a box reaches into.
@@ -145,8 +155,8 @@ fn opposite(triangle: [u32; 3], vertex: u32) -> [u32; 2] {
 
 /// Which side of the plane through a, b and c the point d lies on: a sign, exact.
 fn side(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
-    let [a, b, c, d] = [a, b, c, d].map(|[x, y, z]| Coord3D { x, y, z });
-    orient3d(a, b, c, d)
+    let coord = |[x, y, z]: Vec3| Coord3D { x, y, z };
+    orient3d(coord(a), coord(b), coord(c), coord(d))
 }
 
 /// Which side of the line through a and b the point c lies on, seen along an axis; exact.
@@ -188,8 +198,12 @@ fn segment_meets_triangle([p, q]: [Vec3; 2], t: [Vec3; 3]) -> bool {
         };
     }
     // The line through p and q passes all three edges on the same side, or touches them.
-    let turns = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
-    turns.iter().all(|&s| s >= 0.0) || turns.iter().all(|&s| s <= 0.0)
+    let (first, second) = (side(p, q, a, b), side(p, q, b, c));
+    if sign(first) * sign(second) < 0 {
+        return false;
+    }
+    let third = side(p, q, c, a);
+    sign(first) * sign(third) >= 0 && sign(second) * sign(third) >= 0
 }
 
 /// The same for a segment in the plane of a triangle that is open along the axis.

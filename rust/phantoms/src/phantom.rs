@@ -37,18 +37,24 @@ impl Frame {
 
     /// World coordinates of a continuous voxel index, counted from the first voxel.
     pub fn world(&self, index: Vec3) -> Vec3 {
-        let local: Vec3 =
-            std::array::from_fn(|a| self.spacing[a] * (self.extent_start[a] as f64 + index[a]));
-        add(self.origin, self.direction.map(|row| dot(row, local)))
+        let place = |a: usize| self.spacing[a] * (self.extent_start[a] as f64 + index[a]);
+        let local = [place(0), place(1), place(2)];
+        let [x, y, z] = &self.direction;
+        add(
+            self.origin,
+            [dot(*x, local), dot(*y, local), dot(*z, local)],
+        )
     }
 
     /// Continuous voxel index of a world point; the inverse of [`Frame::world`].
     pub fn index(&self, world: Vec3) -> Vec3 {
         let d = sub(world, self.origin);
-        std::array::from_fn(|a| {
-            let local: f64 = (0..3).map(|r| self.direction[r][a] * d[r]).sum();
+        let [x, y, z] = &self.direction;
+        let index = |a: usize| {
+            let local = x[a] * d[0] + y[a] * d[1] + z[a] * d[2];
             local / self.spacing[a] - self.extent_start[a] as f64
-        })
+        };
+        [index(0), index(1), index(2)]
     }
 
     /// The middle of the volume, world coordinates.

@@ -1,5 +1,6 @@
 //! The triangles of a mesh, to be asked for those near a point.
 
+use rstar::primitives::CachedEnvelope;
 use rstar::{PointDistance, RTree, RTreeObject, AABB};
 
 use crate::vector::{cross, dot, length, scale, sub, Vec3};
@@ -23,8 +24,9 @@ impl PointDistance for Leaf {
     }
 }
 
-pub(crate) fn triangle_tree(triangles: &[[Vec3; 3]]) -> RTree<Leaf> {
-    RTree::bulk_load(triangles.iter().map(|&corners| Leaf { corners }).collect())
+pub(crate) fn triangle_tree(triangles: &[[Vec3; 3]]) -> RTree<CachedEnvelope<Leaf>> {
+    let leaf = |&corners: &[Vec3; 3]| CachedEnvelope::new(Leaf { corners });
+    RTree::bulk_load(triangles.iter().map(leaf).collect())
 }
 
 /// Exact distance of a point from a triangle with an area: from its plane where the foot lies

@@ -29,7 +29,7 @@ pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
 
 /// t a.
 pub fn scale(t: f64, a: Vec3) -> Vec3 {
-    a.map(|v| t * v)
+    [t * a[0], t * a[1], t * a[2]]
 }
 
 /// Length of a.
