@@ -78,5 +78,53 @@ impl Edges {
     }
 }
 
+/// The half-edges that leave each point: those of point p are `list[start[p] .. start[p + 1]]`.
+pub(crate) struct Fans {
+    start: Vec<u32>,
+    list: Vec<u32>,
+}
+
+impl Fans {
+    /// Sorts the half-edges into buckets by their origin.
+    pub fn new(triangles: &[[u32; 3]], points: usize) -> Self {
+        let mut start = vec![0u32; points + 1];
+        for &p in triangles.iter().flatten() {
+            start[p as usize] += 1;
+        }
+        let mut sum = 0;
+        for s in &mut start {
+            sum += *s;
+            *s = sum;
+        }
+        // Filled from the back, the ends of the buckets become their starts.
+        let mut list = vec![0; 3 * triangles.len()];
+        for e in (0..list.len() as u32).rev() {
+            let slot = &mut start[ends(triangles, e).0 as usize];
+            *slot -= 1;
+            list[*slot as usize] = e;
+        }
+        Self { start, list }
+    }
+
+    /// The half-edges that leave a point.
+    pub fn of(&self, p: u32) -> &[u32] {
+        &self.list[self.start[p as usize] as usize..self.start[p as usize + 1] as usize]
+    }
+
+    /// The opposite half-edge of a half-edge of a consistently wound manifold, or [`NONE`].
+    pub fn twin(&self, triangles: &[[u32; 3]], e: u32) -> u32 {
+        let (a, b) = ends(triangles, e);
+        let back = |&&f: &&u32| ends(triangles, f).1 == a;
+        self.of(b).iter().find(back).copied().unwrap_or(NONE)
+    }
+
+    /// The opposite half-edges of all.
+    pub fn twins(&self, triangles: &[[u32; 3]]) -> Vec<u32> {
+        (0..3 * triangles.len() as u32)
+            .map(|e| self.twin(triangles, e))
+            .collect()
+    }
+}
+
 /// Number of half-edges that a walk around a point can take at most, as a bound for its loop.
 pub(crate) const MOST_AROUND: usize = 1 << 20;

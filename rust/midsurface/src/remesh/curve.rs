@@ -1,0 +1,206 @@
+//! The boundary of the reference as curves with an arc length.
+//!
+//! A boundary point of the remeshed surface is known by its loop and its arc length along it, so
+//! that sliding is a matter of one number and can neither leave the curve nor overtake a
+//! neighbour. Between the points of the reference the curve is bent as `reference.rs` bends
+//! triangles, with tangents instead of normals.
+
+use super::patch::{Kind, Vertex};
+use super::reference::Reference;
+use crate::grid::{along, dot, length, sub, unit, Vec3};
+use crate::halfedge::{ends, NONE};
+
+/// Length over which the direction of the boundary is compared, to find corners.
+const CORNER_REACH: f64 = 1.5;
+/// Cosine of the least turn of a corner, 55°.
+const CORNER: f64 = 0.57;
+/// A loop shorter than so many reaches turns sharply all along and has no corners.
+const ROUND: f64 = 10.0;
+
+/// A closed boundary curve: a range of the arrays of [`Curve`].
+#[derive(Clone, Copy, Debug)]
+struct Loop {
+    first: usize,
+    count: usize,
+    length: f64,
+}
+
+/// All boundary curves of a reference.
+#[derive(Debug, Default)]
+pub(super) struct Curve {
+    loops: Vec<Loop>,
+    /// Half-edges of the reference in the direction of its triangles; each starts at its point.
+    half_edges: Vec<u32>,
+    points: Vec<Vec3>,
+    /// Arc length at each point.
+    parameters: Vec<f64>,
+    /// Unit tangent at each point; zero at a corner.
+    tangents: Vec<Vec3>,
+}
+
+impl Curve {
+    /// Links the half-edges without a twin to loops.
+    pub fn new(points: &[Vec3], triangles: &[[u32; 3]], twins: &[u32]) -> Self {
+        let mut curve = Self::default();
+        let border: Vec<u32> = (0..twins.len() as u32)
+            .filter(|&e| twins[e as usize] == NONE)
+            .collect();
+        let mut leaving: Vec<(u32, u32)> =
+            border.iter().map(|&e| (ends(triangles, e).0, e)).collect();
+        leaving.sort_unstable();
+        let position = |p: u32| leaving.binary_search_by_key(&p, |l| l.0).ok();
+        let mut seen = vec![false; leaving.len()];
+        for start in 0..leaving.len() {
+            let first = curve.half_edges.len();
+            let mut at = Some(start);
+            while let Some(i) = at.filter(|&i| !seen[i]) {
+                seen[i] = true;
+                curve.half_edges.push(leaving[i].1);
+                curve.points.push(points[leaving[i].0 as usize]);
+                at = position(ends(triangles, leaving[i].1).1);
+            }
+            curve.close_loop(first);
+        }
+        curve
+    }
+
+    /// Makes a loop of all points from `first` on.
+    fn close_loop(&mut self, first: usize) {
+        let points = &self.points[first..];
+        let count = points.len();
+        if count == 0 {
+            return;
+        }
+        let mut length_so_far = 0.0;
+        for i in 0..count {
+            self.parameters.push(length_so_far);
+            length_so_far += length(sub(points[(i + 1) % count], points[i]));
+        }
+        let curve = Loop {
+            first,
+            count,
+            length: length_so_far,
+        };
+        self.loops.push(curve);
+        let number = self.loops.len() as u32 - 1;
+        let turns: Vec<f64> = (0..count)
+            .map(|i| self.turn(number, self.parameters[first + i]))
+            .collect();
+        let is_corner = |i: usize| {
+            let sharpest = |j: usize| turns[i] <= turns[j % count];
+            curve.length > ROUND * CORNER_REACH
+                && turns[i] < CORNER
+                && sharpest(i + 1)
+                && sharpest(i + count - 1)
+        };
+        let tangents: Vec<Vec3> = (0..count)
+            .map(|i| match is_corner(i) {
+                true => [0.0; 3],
+                false => self.tangent(curve, i),
+            })
+            .collect();
+        self.tangents.extend(tangents);
+    }
+
+    /// Cosine of the angle by which a loop turns around a place.
+    fn turn(&self, number: u32, parameter: f64) -> f64 {
+        let at = |s: f64| {
+            let (i, j, t) = self.locate(number, s);
+            along(self.points[i], t, sub(self.points[j], self.points[i]))
+        };
+        let here = at(parameter);
+        let back = sub(here, at(parameter - CORNER_REACH));
+        let ahead = sub(at(parameter + CORNER_REACH), here);
+        dot(unit(back), unit(ahead))
+    }
+
+    /// Direction of the parabola through a point of a loop and its neighbours.
+    fn tangent(&self, curve: Loop, i: usize) -> Vec3 {
+        let point = |i: usize| self.points[curve.first + i % curve.count];
+        let back = sub(point(i), point(i + curve.count - 1));
+        let ahead = sub(point(i + 1), point(i));
+        let (a, b) = (length(back).max(1e-9), length(ahead).max(1e-9));
+        unit(along(back.map(|v| v * b / a), a / b, ahead))
+    }
+
+    /// The two points around an arc length, and the share of the way between them.
+    fn locate(&self, number: u32, parameter: f64) -> (usize, usize, f64) {
+        let Loop {
+            first,
+            count,
+            length,
+        } = self.loops[number as usize];
+        let s = parameter.rem_euclid(length.max(1e-12));
+        let after = self.parameters[first..first + count].partition_point(|&p| p <= s);
+        let i = after.max(1) - 1;
+        let j = (i + 1) % count;
+        let start = self.parameters[first + i];
+        let end = if j == 0 {
+            length
+        } else {
+            self.parameters[first + j]
+        };
+        let t = (s - start) / (end - start).max(1e-12);
+        (first + i, first + j, t.clamp(0.0, 1.0))
+    }
+
+    /// How far it is along a loop from one arc length on to another.
+    pub fn distance(&self, number: u32, from: f64, to: f64) -> f64 {
+        (to - from).rem_euclid(self.loops[number as usize].length.max(1e-12))
+    }
+
+    /// Length of a loop.
+    pub fn loop_length(&self, number: u32) -> f64 {
+        self.loops[number as usize].length
+    }
+
+    /// Each point of the curve: its half-edge, its loop, its arc length, whether it is a corner.
+    pub fn vertices(&self) -> impl Iterator<Item = (u32, u32, f64, bool)> + '_ {
+        (0..self.loops.len() as u32).flat_map(move |number| {
+            let curve = self.loops[number as usize];
+            (curve.first..curve.first + curve.count).map(move |i| {
+                let corner = self.tangents[i] == [0.0; 3];
+                (self.half_edges[i], number, self.parameters[i], corner)
+            })
+        })
+    }
+
+    /// Curvature of the curve around a place.
+    pub fn curvature(&self, number: u32, parameter: f64) -> f64 {
+        self.turn(number, parameter).clamp(-1.0, 1.0).acos() / CORNER_REACH
+    }
+
+    /// The half-edge of the reference below a boundary point, and the share of the way along it.
+    pub fn origin(&self, vertex: &Vertex) -> (u32, f64) {
+        let (i, _, t) = self.locate(vertex.at, vertex.parameter);
+        (self.half_edges[i], t)
+    }
+
+    /// The boundary point at an arc length of a loop.
+    pub fn vertex(&self, reference: &Reference, number: u32, parameter: f64) -> Vertex {
+        let (i, j, t) = self.locate(number, parameter);
+        let (a, b) = (self.points[i], self.points[j]);
+        let flat = along(a, t, sub(b, a));
+        let on_tangent = |x: Vec3, tangent: Vec3| match tangent {
+            [0.0, 0.0, 0.0] => flat,
+            _ => along(x, dot(sub(flat, x), tangent), tangent),
+        };
+        let (p, q) = (
+            on_tangent(a, self.tangents[i]),
+            on_tangent(b, self.tangents[j]),
+        );
+        let bent = along(p, t, sub(q, p));
+        let (v, w) = ends(reference.triangles, self.half_edges[i]);
+        let mix = |x: f32, y: f32| x + (y - x) * t as f32;
+        let (m, n) = (reference.normals[v as usize], reference.normals[w as usize]);
+        let normal = unit(std::array::from_fn(|k| f64::from(mix(m[k], n[k]))));
+        Vertex {
+            point: std::array::from_fn(|k| 0.5 * (flat[k] + bent[k])),
+            parameter: parameter.rem_euclid(self.loops[number as usize].length.max(1e-12)),
+            normal: normal.map(|v| v as f32),
+            size: mix(reference.sizes[v as usize], reference.sizes[w as usize]),
+            at: number,
+            kind: Kind::Boundary,
+        }
+    }
+}

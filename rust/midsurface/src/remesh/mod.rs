@@ -1,0 +1,175 @@
+//! Isotropic remeshing: a mesh of any triangles in, one of nearly equilateral triangles out.
+//!
+//! The known base is Botsch and Kobbelt, "A remeshing approach to multiresolution modeling"
+//! (2004): split long edges, collapse short ones, flip edges for better valence, move points along
+//! the surface, repeat. Points lie on the mesh that came in, the reference, at all times
+//! (`reference.rs`), boundary points on its boundary (`curve.rs`). Components, Euler number and
+//! boundary loops never change.
+//!
+//! | step | file |
+//! | --- | --- |
+//! | how long edges should be, place by place | `sizing.rs` |
+//! | cut into blocks that threads work on at once, with their borders frozen | `blocks.rs` |
+//! | a block's half-edges, and the three changes of connectivity | `patch.rs` |
+//! | which edges are split, collapsed, flipped | `split.rs`, `collapse.rs`, `flip.rs` |
+//! | where points move | `relax.rs` |
+//!
+//! A triangle's work touches its block only, and blocks lie on a global grid: no step looks
+//! farther than a block's side.
+
+mod blocks;
+mod collapse;
+mod curve;
+mod flip;
+mod patch;
+mod reference;
+mod relax;
+mod shape;
+mod sizing;
+mod split;
+mod subdivide;
+#[cfg(test)]
+mod tests;
+
+use crate::error::{reserved, zeros, Result};
+use crate::execution::Execution;
+use crate::grid::{length, sub, Vec3};
+use crate::halfedge::ends;
+use blocks::{Blocks, Surface};
+use patch::{Kind, Patch, Vertex};
+use reference::{Place, Reference};
+use subdivide::subdivide;
+
+/// A remeshed surface.
+#[derive(Debug, Default)]
+pub(crate) struct Remeshed {
+    pub points: Vec<Vec3>,
+    /// Wound as the input's.
+    pub triangles: Vec<[u32; 3]>,
+    /// Where each point lies on the input.
+    pub origin: Vec<Origin>,
+}
+
+/// A place on the input mesh: one of its triangles, and the weights of its corners, which sum to
+/// 1 and are not negative. A triangle's three points stem from the same component.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Origin {
+    pub triangle: u32,
+    pub weights: [f32; 3],
+}
+
+/// Side of a block in edge lengths.
+const BLOCK: f64 = 20.0;
+/// Shifts of the grid of blocks from pass to pass, in sides along each axis.
+const SHIFTS: [f64; 5] = [0.0, 0.5, 0.25, 0.75, 0.4];
+/// Passes at twice the final edge length, and at the final one.
+const COARSE_PASSES: usize = 4;
+const FINE_PASSES: usize = 3;
+/// Times that points are moved in a pass.
+const RELAXATIONS: usize = 3;
+/// Points handed to a worker at a time.
+const PIECE: usize = 4096;
+
+/// Remeshes a consistently wound 2-manifold, with or without boundary, to edges of about
+/// `edge_length`. Lengths are in units of the finest voxel spacing.
+pub(crate) fn remesh(
+    points: &[Vec3],
+    triangles: &[[u32; 3]],
+    edge_length: f64,
+    execution: &mut Execution,
+) -> Result<Remeshed> {
+    if triangles.is_empty() {
+        return Ok(Remeshed::default());
+    }
+    let reference = Reference::new(points, triangles, edge_length, execution)?;
+    let mut surface = start(&reference)?;
+    let coarse = schedule(points, triangles, 2.0 * edge_length);
+    let fine = [edge_length; FINE_PASSES];
+    for (number, &longest) in coarse.iter().chain(&fine).enumerate() {
+        if number == coarse.len() {
+            surface = subdivide(&surface, &reference, execution)?;
+        }
+        let scale = if number < coarse.len() { 2.0 } else { 1.0 };
+        let shift = SHIFTS[number % SHIFTS.len()];
+        let shifts = [shift, (1.7 * shift).fract(), (2.3 * shift).fract()];
+        let blocks = Blocks::new(&surface, BLOCK * longest, shifts, execution)?;
+        surface = blocks.work(&surface, &reference, (scale, longest), execution, improve)?;
+    }
+    finish(&reference, surface, execution)
+}
+
+/// One pass over a block.
+fn improve(patch: &mut Patch) {
+    split::split_long_edges(patch);
+    collapse::collapse_short_edges(patch);
+    for _ in 0..RELAXATIONS {
+        flip::flip_edges(patch);
+        relax::relax(patch);
+    }
+}
+
+/// The longest edge wanted in each pass. Much coarser meshes are reached by doubling, so that
+/// blocks hold about as much in each pass.
+fn schedule(points: &[Vec3], triangles: &[[u32; 3]], edge_length: f64) -> Vec<f64> {
+    let way = |e: u32| {
+        let (a, b) = ends(triangles, e);
+        length(sub(points[b as usize], points[a as usize]))
+    };
+    let count = 3 * triangles.len() as u32;
+    let mean = (0..count).map(way).sum::<f64>() / f64::from(count);
+    let mut passes = vec![edge_length; COARSE_PASSES];
+    let mut coarser = 0.5 * edge_length;
+    while coarser > 2.0 * mean && passes.len() < 64 {
+        passes.insert(0, coarser);
+        coarser *= 0.5;
+    }
+    passes
+}
+
+/// The reference as the first surface.
+fn start(reference: &Reference) -> Result<Surface> {
+    let mut vertices: Vec<Vertex> = zeros(reference.points.len())?;
+    for (t, triangle) in reference.triangles.iter().enumerate() {
+        for p in triangle.map(|p| p as usize) {
+            vertices[p] = Vertex {
+                point: reference.points[p],
+                normal: reference.normals[p],
+                size: reference.sizes[p],
+                at: t as u32,
+                ..Vertex::default()
+            };
+        }
+    }
+    for (e, number, parameter, corner) in reference.curve.vertices() {
+        let vertex = &mut vertices[ends(reference.triangles, e).0 as usize];
+        (vertex.at, vertex.parameter) = (number, parameter);
+        vertex.kind = if corner { Kind::Corner } else { Kind::Boundary };
+    }
+    let mut triangles = reserved(reference.triangles.len())?;
+    triangles.extend_from_slice(reference.triangles);
+    Ok(Surface {
+        vertices,
+        triangles,
+    })
+}
+
+/// The result, with each point's origin.
+fn finish(reference: &Reference, surface: Surface, execution: &mut Execution) -> Result<Remeshed> {
+    let mut origin: Vec<Origin> = zeros(surface.vertices.len())?;
+    execution.fill(&mut origin, PIECE, |piece, out| {
+        for (i, origin) in out.iter_mut().enumerate() {
+            let Place { triangle, weights } = reference.place(&surface.vertices[piece * PIECE + i]);
+            *origin = Origin {
+                triangle,
+                weights: weights.map(|w| w as f32),
+            };
+        }
+    })?;
+    let mut points = reserved(surface.vertices.len())?;
+    points.extend(surface.vertices.iter().map(|v| v.point));
+    Ok(Remeshed {
+        points,
+        triangles: surface.triangles,
+        origin,
+    })
+}

@@ -1,0 +1,320 @@
+//! A piece of the surface under work: points and triangles numbered from 0, half-edges as arrays.
+//!
+//! Half-edge 3 t + k goes from corner k of triangle t to the next corner. Points that triangles of
+//! other blocks use too are frozen: they neither move nor go, and no decision may rest on their
+//! neighbours, which are not all here. A half-edge without a twin is a boundary of the surface
+//! wherever one of its ends is not frozen.
+
+use super::reference::Reference;
+use crate::grid::Vec3;
+use crate::halfedge::{next, NONE};
+
+/// Where a point may go.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Anywhere on the reference surface.
+    #[default]
+    Interior,
+    /// Along the boundary curve.
+    Boundary,
+    /// Nowhere: a corner of the boundary curve.
+    Corner,
+}
+
+/// A point of the surface with what the reference says about its place.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Vertex {
+    pub point: Vec3,
+    /// Boundary points: arc length along the boundary curve.
+    pub parameter: f64,
+    /// Unit normal of the reference.
+    pub normal: [f32; 3],
+    /// Edge length wanted here.
+    pub size: f32,
+    /// Interior points: the triangle of the reference; boundary points: the loop of its curve.
+    pub at: u32,
+    pub kind: Kind,
+}
+
+impl Vertex {
+    pub fn normal(&self) -> Vec3 {
+        self.normal.map(f64::from)
+    }
+    pub fn is_boundary(&self) -> bool {
+        self.kind != Kind::Interior
+    }
+}
+
+/// The half-edge before in the same triangle.
+pub(super) fn previous(half_edge: u32) -> u32 {
+    if half_edge % 3 == 0 {
+        half_edge + 2
+    } else {
+        half_edge - 1
+    }
+}
+
+/// The most triangles around a point that a step looks at.
+pub(super) const MOST_AROUND: usize = 256;
+
+/// A piece of the surface.
+pub(super) struct Patch<'a> {
+    pub reference: &'a Reference<'a>,
+    /// Edges are wanted so many times longer than in the end,
+    scale: f64,
+    /// but no longer than this.
+    longest: f64,
+    pub vertices: Vec<Vertex>,
+    pub frozen: Vec<bool>,
+    /// Number of edges of each point on the whole surface.
+    pub valence: Vec<i32>,
+    /// Number of triangles of each point in this patch.
+    pub fan: Vec<i32>,
+    /// A half-edge that leaves each point; on a boundary, the one without a twin.
+    out: Vec<u32>,
+    /// A removed triangle has the corners [`NONE`].
+    pub triangles: Vec<[u32; 3]>,
+    pub twins: Vec<u32>,
+    /// Removed triangles.
+    free: Vec<u32>,
+}
+
+impl<'a> Patch<'a> {
+    pub fn new(
+        reference: &'a Reference<'a>,
+        (scale, longest): (f64, f64),
+        vertices: Vec<Vertex>,
+        frozen: Vec<bool>,
+        valence: Vec<i32>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Self {
+        let count = vertices.len();
+        let mut fan = vec![0; count];
+        for t in &triangles {
+            t.iter().for_each(|&p| fan[p as usize] += 1);
+        }
+        let mut patch = Self {
+            reference,
+            scale,
+            longest,
+            vertices,
+            frozen,
+            valence,
+            fan,
+            out: vec![NONE; count],
+            twins: Vec::new(),
+            triangles,
+            free: Vec::new(),
+        };
+        patch.twins = crate::halfedge::Fans::new(&patch.triangles, count).twins(&patch.triangles);
+        for e in 0..patch.twins.len() as u32 {
+            patch.set_out(e);
+        }
+        patch
+    }
+
+    /// First point of a half-edge.
+    pub fn origin(&self, e: u32) -> u32 {
+        self.triangles[e as usize / 3][e as usize % 3]
+    }
+
+    /// Last point of a half-edge.
+    pub fn end(&self, e: u32) -> u32 {
+        self.origin(next(e))
+    }
+
+    /// The corner opposite a half-edge.
+    pub fn opposite(&self, e: u32) -> u32 {
+        self.origin(previous(e))
+    }
+
+    pub fn twin(&self, e: u32) -> u32 {
+        self.twins[e as usize]
+    }
+
+    pub fn point(&self, p: u32) -> Vec3 {
+        self.vertices[p as usize].point
+    }
+
+    pub fn is_alive(&self, triangle: u32) -> bool {
+        self.triangles[triangle as usize][0] != NONE
+    }
+
+    /// Edge length wanted at a point.
+    pub fn size(&self, p: u32) -> f64 {
+        (self.scale * f64::from(self.vertices[p as usize].size)).min(self.longest)
+    }
+
+    /// Edge length wanted between two points.
+    pub fn wanted(&self, a: u32, b: u32) -> f64 {
+        0.5 * (self.size(a) + self.size(b))
+    }
+
+    /// The half-edges that leave a point that is not frozen, counter-clockwise. On a boundary the
+    /// first one has no twin.
+    pub fn around(&self, p: u32) -> Around<'_> {
+        Around {
+            twins: &self.twins,
+            first: self.out[p as usize],
+            at: self.out[p as usize],
+            left: MOST_AROUND,
+        }
+    }
+
+    /// The previous point along the boundary and the next one.
+    pub fn along_boundary(&self, p: u32) -> Option<[u32; 2]> {
+        let first = self.out[p as usize];
+        let last = self.around(p).last()?;
+        (self.twin(first) == NONE && self.twin(previous(last)) == NONE)
+            .then(|| [self.opposite(last), self.end(first)])
+    }
+
+    /// Whether two points, the first of which is not frozen, share an edge.
+    pub fn joined(&self, p: u32, q: u32) -> bool {
+        self.around(p)
+            .any(|e| self.end(e) == q || self.opposite(e) == q)
+    }
+
+    /// Makes half-edge e the one known to leave its origin, unless a boundary needs another.
+    fn set_out(&mut self, e: u32) {
+        let p = self.origin(e) as usize;
+        if self.out[p] == NONE || !self.vertices[p].is_boundary() || self.twin(e) == NONE {
+            self.out[p] = e;
+        }
+    }
+
+    fn link(&mut self, e: u32, f: u32) {
+        for (e, f) in [(e, f), (f, e)] {
+            if e != NONE {
+                self.twins[e as usize] = f;
+                self.set_out(e);
+            }
+        }
+    }
+
+    fn add_triangle(&mut self) -> u32 {
+        if let Some(t) = self.free.pop() {
+            return t;
+        }
+        self.triangles.push([NONE; 3]);
+        self.twins.extend([NONE; 3]);
+        self.triangles.len() as u32 - 1
+    }
+
+    /// Turns the edge of e, shared by triangles abc and bad, into cd.
+    pub fn flip(&mut self, e: u32) {
+        let f = self.twin(e);
+        let ([a, b, c], d) = (
+            [self.origin(e), self.end(e), self.opposite(e)],
+            self.opposite(f),
+        );
+        let outer = [next(e), previous(e), next(f), previous(f)].map(|h| self.twin(h));
+        let (s, t) = (e / 3, f / 3);
+        self.triangles[s as usize] = [c, a, d];
+        self.triangles[t as usize] = [d, b, c];
+        self.link(3 * s, outer[1]);
+        self.link(3 * s + 1, outer[2]);
+        self.link(3 * t, outer[3]);
+        self.link(3 * t + 1, outer[0]);
+        self.link(3 * s + 2, 3 * t + 2);
+        for (p, change) in [(a, -1), (b, -1), (c, 1), (d, 1)] {
+            self.valence[p as usize] += change;
+            self.fan[p as usize] += change;
+        }
+    }
+
+    /// Puts a new point on the edge of e, and returns it.
+    pub fn split(&mut self, e: u32, vertex: Vertex) -> u32 {
+        let m = self.vertices.len() as u32;
+        let [a, b, c] = [self.origin(e), self.end(e), self.opposite(e)];
+        let f = self.twin(e);
+        self.vertices.push(vertex);
+        self.frozen.push(false);
+        self.valence.push(if f == NONE { 3 } else { 4 });
+        self.fan.push(if f == NONE { 2 } else { 4 });
+        self.out.push(NONE);
+        let (bc, ca) = (self.twin(next(e)), self.twin(previous(e)));
+        let (s, s2) = (e / 3, self.add_triangle());
+        self.triangles[s as usize] = [a, m, c];
+        self.triangles[s2 as usize] = [m, b, c];
+        self.count(c, 1);
+        if f == NONE {
+            self.link(3 * s, NONE);
+            self.link(3 * s2, NONE);
+        } else {
+            let d = self.opposite(f);
+            let (ad, db) = (self.twin(next(f)), self.twin(previous(f)));
+            let (t, t2) = (f / 3, self.add_triangle());
+            self.triangles[t as usize] = [m, a, d];
+            self.triangles[t2 as usize] = [b, m, d];
+            self.count(d, 1);
+            self.link(3 * s, 3 * t);
+            self.link(3 * s2, 3 * t2);
+            self.link(3 * t + 2, 3 * t2 + 1);
+            self.link(3 * t + 1, ad);
+            self.link(3 * t2 + 2, db);
+        }
+        self.link(3 * s + 1, 3 * s2 + 2);
+        self.link(3 * s + 2, ca);
+        self.link(3 * s2 + 1, bc);
+        m
+    }
+
+    fn count(&mut self, p: u32, change: i32) {
+        self.valence[p as usize] += change;
+        self.fan[p as usize] += change;
+    }
+
+    /// Removes point v by drawing it into its neighbour u along half-edge e, which joins the two
+    /// in either direction. `ring` are the half-edges that leave v.
+    pub fn collapse(&mut self, e: u32, v: u32, u: u32, ring: &[u32]) {
+        let f = self.twin(e);
+        let shared = if f == NONE { 1 } else { 2 };
+        for &h in ring {
+            self.triangles[h as usize / 3][h as usize % 3] = u;
+        }
+        self.fan[u as usize] += self.fan[v as usize] - 2 * shared;
+        self.valence[u as usize] += self.valence[v as usize] - 2 - shared;
+        for h in [e, f].into_iter().filter(|&h| h != NONE) {
+            let c = self.opposite(h);
+            self.count(c, -1);
+            let (x, y) = (self.twin(next(h)), self.twin(previous(h)));
+            self.triangles[h as usize / 3] = [NONE; 3];
+            self.free.push(h / 3);
+            self.link(x, y);
+        }
+        for &h in ring {
+            if self.is_alive(h / 3) {
+                self.set_out(h);
+            }
+        }
+        self.out[v as usize] = NONE;
+    }
+
+    /// Whether a point is used by no triangle any more.
+    pub fn is_removed(&self, p: u32) -> bool {
+        self.out[p as usize] == NONE
+    }
+}
+
+/// Half-edges around a point.
+pub(super) struct Around<'a> {
+    twins: &'a [u32],
+    first: u32,
+    at: u32,
+    left: usize,
+}
+
+impl Iterator for Around<'_> {
+    type Item = u32;
+    fn next(&mut self) -> Option<u32> {
+        if self.at == NONE || self.left == 0 {
+            return None;
+        }
+        let e = self.at;
+        let back = self.twins[previous(e) as usize];
+        self.at = if back == self.first { NONE } else { back };
+        self.left -= 1;
+        Some(e)
+    }
+}

@@ -1,0 +1,141 @@
+//! The edge length wanted at each point of the reference.
+//!
+//! It is the length asked for, but no longer than keeps flat triangles near the curved surface
+//! (an edge of length L leaves a surface of radius R by L² / 8 R, a triangle by L² / 6 R), than
+//! keeps a boundary near its curve, and than leaves a boundary loop some edges; and it grows
+//! slowly from fine places to coarse ones, since triangles between unequal edges are poor. Sheets
+//! close to each other are kept apart by the same bound on how far a triangle leaves its sheet.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::reference::Reference;
+use crate::error::{zeros, Result};
+use crate::execution::Execution;
+use crate::grid::{along, dot, length, sub, unit, Vec3};
+use crate::halfedge::{ends, next, Fans};
+use crate::remesh::patch::previous;
+
+/// How far a flat triangle may be from the surface, in units of the finest spacing.
+const CHORD: f64 = 0.1;
+/// Curvature never asks for edges shorter than this (or than was asked for).
+const FINEST: f64 = 0.7;
+/// Growth of the edge length along the surface.
+const GROWTH: f64 = 0.25;
+/// The least number of edges of a boundary loop.
+const LOOP_EDGES: f64 = 6.0;
+/// Passes that smooth the normals before their change is measured, against noise.
+const SMOOTHING: usize = 3;
+/// Points handed to a worker at a time.
+const PIECE: usize = 4096;
+
+/// The edge length wanted at every point of the reference.
+pub(super) fn sizes(
+    reference: &Reference,
+    fans: &Fans,
+    edge_length: f64,
+    execution: &mut Execution,
+) -> Result<Vec<f32>> {
+    let normals = smooth_normals(reference, fans, execution)?;
+    let mut sizes: Vec<f32> = zeros(reference.points.len())?;
+    execution.fill(&mut sizes, PIECE, |piece, out| {
+        for (i, size) in out.iter_mut().enumerate() {
+            let p = (piece * PIECE + i) as u32;
+            let curvature = curvature(reference, fans, &normals, p);
+            *size = bounded((6.0 * CHORD / curvature).sqrt(), edge_length);
+        }
+    })?;
+    for (e, number, parameter, _) in reference.curve.vertices() {
+        let p = ends(reference.triangles, e).0;
+        let radius = 1.0 / reference.curve.curvature(number, parameter);
+        let length = reference.curve.loop_length(number) / LOOP_EDGES;
+        let wanted = bounded((8.0 * CHORD * radius).sqrt().min(length), edge_length);
+        let size = &mut sizes[p as usize];
+        *size = size.min(wanted);
+    }
+    grade(reference, fans, edge_length as f32, &mut sizes);
+    Ok(sizes)
+}
+
+fn bounded(wanted: f64, edge_length: f64) -> f32 {
+    // A flat place wants an infinite edge.
+    wanted.max(FINEST).min(edge_length) as f32
+}
+
+/// Normals averaged over their neighbours a few times.
+fn smooth_normals(
+    reference: &Reference,
+    fans: &Fans,
+    execution: &mut Execution,
+) -> Result<Vec<[f32; 3]>> {
+    let mut now = reference.normals.clone();
+    let mut smooth: Vec<[f32; 3]> = zeros(now.len())?;
+    for _ in 0..SMOOTHING {
+        execution.fill(&mut smooth, PIECE, |piece, out| {
+            for (i, normal) in out.iter_mut().enumerate() {
+                let p = (piece * PIECE + i) as u32;
+                let mut sum = now[p as usize].map(f64::from);
+                for q in neighbours(reference, fans, p) {
+                    sum = along(sum, 0.5, now[q as usize].map(f64::from));
+                }
+                *normal = unit(sum).map(|v| v as f32);
+            }
+        })?;
+        std::mem::swap(&mut now, &mut smooth);
+    }
+    Ok(now)
+}
+
+/// The other corners of a point's triangles: most neighbours twice, those along a boundary once.
+fn neighbours<'a>(
+    reference: &'a Reference,
+    fans: &'a Fans,
+    p: u32,
+) -> impl Iterator<Item = u32> + 'a {
+    let corner = |e: u32| ends(reference.triangles, e).0;
+    fans.of(p)
+        .iter()
+        .flat_map(move |&e| [corner(next(e)), corner(previous(e))])
+}
+
+/// The change of the normals around a point over the way it takes: 1 / R on a sphere.
+fn curvature(reference: &Reference, fans: &Fans, normals: &[[f32; 3]], p: u32) -> f64 {
+    let normal = |p: u32| -> Vec3 { normals[p as usize].map(f64::from) };
+    let (mut turned, mut way) = (0.0, 0.0);
+    for q in neighbours(reference, fans, p) {
+        let turn = sub(normal(q), normal(p));
+        let step = sub(reference.points[q as usize], reference.points[p as usize]);
+        turned += dot(turn, turn);
+        way += dot(step, step);
+    }
+    if way > 0.0 {
+        (turned / way).sqrt()
+    } else {
+        0.0
+    }
+}
+
+/// Limits the growth of the sizes along the surface, from the fine places outward.
+fn grade(reference: &Reference, fans: &Fans, edge_length: f32, sizes: &mut [f32]) {
+    // Sizes are positive, so that their bits order as they do.
+    let mut heap: BinaryHeap<Reverse<(u32, u32)>> = (0..sizes.len() as u32)
+        .filter(|&p| sizes[p as usize] < edge_length)
+        .map(|p| Reverse((sizes[p as usize].to_bits(), p)))
+        .collect();
+    while let Some(Reverse((bits, p))) = heap.pop() {
+        if bits != sizes[p as usize].to_bits() {
+            continue;
+        }
+        for q in neighbours(reference, fans, p) {
+            let way = length(sub(
+                reference.points[q as usize],
+                reference.points[p as usize],
+            ));
+            let most = f32::from_bits(bits) + (GROWTH * way) as f32;
+            if most < sizes[q as usize] {
+                sizes[q as usize] = most;
+                heap.push(Reverse((most.to_bits(), q)));
+            }
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Every triangle becomes four: each edge gets a point in its middle.
+//!
+//! The new points have six edges each, four on a boundary, so that a coarse mesh of good triangles
+//! becomes a fine one in which three points out of four are regular, and the costly changes of
+//! connectivity are made where there are four times fewer triangles.
+
+use super::blocks::Surface;
+use super::patch::Vertex;
+use super::reference::Reference;
+use super::split::middle_anyway;
+use crate::error::{reserved, zeros, Error, Result};
+use crate::execution::Execution;
+use crate::halfedge::{ends, Fans, NONE};
+
+/// Edges or triangles handed to a worker at a time.
+const PIECE: usize = 4096;
+
+/// Subdivides a surface; the new points lie on the reference.
+pub(super) fn subdivide(
+    surface: &Surface,
+    reference: &Reference,
+    execution: &mut Execution,
+) -> Result<Surface> {
+    let old = &surface.triangles;
+    let count = surface.vertices.len();
+    let twins = Fans::new(old, count).twins(old);
+    // The edge that each half-edge belongs to, numbered by the first of its half-edges.
+    let mut edge: Vec<u32> = zeros(twins.len())?;
+    let mut firsts: Vec<u32> = reserved(twins.len())?;
+    for (e, &twin) in twins.iter().enumerate() {
+        edge[e] = if twin != NONE && (twin as usize) < e {
+            edge[twin as usize]
+        } else {
+            firsts.push(e as u32);
+            firsts.len() as u32 - 1
+        };
+    }
+    let mut middles: Vec<Vertex> = zeros(firsts.len())?;
+    execution.fill(&mut middles, PIECE, |piece, out| {
+        for (i, vertex) in out.iter_mut().enumerate() {
+            let e = firsts[piece * PIECE + i];
+            let (a, b) = ends(old, e);
+            let ends = [a, b].map(|p| &surface.vertices[p as usize]);
+            *vertex = middle_anyway(reference, ends, twins[e as usize] == NONE);
+        }
+    })?;
+    let mut triangles: Vec<[u32; 3]> = zeros(4 * old.len())?;
+    execution.fill(&mut triangles, 4 * PIECE, |piece, out| {
+        for (i, four) in out.chunks_exact_mut(4).enumerate() {
+            let t = piece * PIECE + i;
+            let [a, b, c] = old[t];
+            let [d, e, f] = [0, 1, 2].map(|k| count as u32 + edge[3 * t + k]);
+            four.copy_from_slice(&[[a, d, f], [d, b, e], [f, e, c], [d, e, f]]);
+        }
+    })?;
+    let mut vertices = reserved(count + middles.len())?;
+    vertices.extend_from_slice(&surface.vertices);
+    vertices.extend(middles);
+    if triangles.len() > u32::MAX as usize / 8 {
+        return Err(Error::OutOfMemory(triangles.len().saturating_mul(12)));
+    }
+    Ok(Surface {
+        vertices,
+        triangles,
+    })
+}

@@ -1,0 +1,162 @@
+mod shapes;
+
+use shapes::{rectangle, ring, sphere, torus, tube, Shape};
+
+use super::{remesh, Remeshed};
+use crate::components::DisjointSets;
+use crate::execution::{Execution, Quiet};
+use crate::grid::{length, sub, Vec3};
+use crate::halfedge::{ends, Fans, NONE};
+use crate::mesh::Mesh;
+
+fn run(shape: &Shape, edge_length: f64, threads: usize) -> Remeshed {
+    let mut quiet = Quiet::default();
+    let mut execution = Execution::new(threads, &mut quiet).unwrap();
+    remesh(&shape.points, &shape.triangles, edge_length, &mut execution).unwrap()
+}
+
+/// Components, Euler number, boundary loops.
+fn topology(points: &[Vec3], triangles: &[[u32; 3]]) -> [i64; 3] {
+    let mut sets = DisjointSets::new(points.len());
+    for t in triangles {
+        sets.join(t[0] as usize, t[1] as usize);
+        sets.join(t[0] as usize, t[2] as usize);
+    }
+    let components = (0..points.len()).filter(|&p| sets.find(p) == p).count();
+    let twins = Fans::new(triangles, points.len()).twins(triangles);
+    let open: Vec<(u32, u32)> = (0..twins.len() as u32)
+        .filter(|&e| twins[e as usize] == NONE)
+        .map(|e| ends(triangles, e))
+        .collect();
+    let mut rims = DisjointSets::new(points.len());
+    open.iter()
+        .for_each(|&(a, b)| rims.join(a as usize, b as usize));
+    let mut roots: Vec<usize> = open.iter().map(|e| rims.find(e.0 as usize)).collect();
+    roots.sort_unstable();
+    roots.dedup();
+    let edges = (twins.len() + open.len()) / 2;
+    let euler = points.len() as i64 - edges as i64 + triangles.len() as i64;
+    [components as i64, euler, roots.len() as i64]
+}
+
+/// The result as a mesh, for its checks.
+fn mesh(remeshed: &Remeshed) -> Mesh {
+    let points = remeshed.points.len();
+    Mesh {
+        points: remeshed
+            .points
+            .iter()
+            .map(|p| p.map(|v| v as f32))
+            .collect(),
+        triangles: remeshed.triangles.clone(),
+        normals: vec![[0.0, 0.0, 1.0]; points],
+        thickness: vec![1.0; points],
+        labels: vec![1; remeshed.triangles.len()],
+        components: vec![0; remeshed.triangles.len()],
+    }
+}
+
+/// Asserts what must hold for any input.
+fn check(shape: &Shape, remeshed: &Remeshed) {
+    assert_eq!(mesh(remeshed).check_invariants(), Ok(()));
+    assert_eq!(
+        topology(&shape.points, &shape.triangles),
+        topology(&remeshed.points, &remeshed.triangles)
+    );
+}
+
+const STEP: f64 = std::f64::consts::SQRT_2;
+
+#[test]
+fn points_lie_on_a_sphere() {
+    for (radius, seed) in [(12.0, 1), (24.0, 2)] {
+        let shape = sphere(radius, seed);
+        let remeshed = run(&shape, STEP, 2);
+        check(&shape, &remeshed);
+        for p in &remeshed.points {
+            assert!((length(*p) - radius).abs() <= 0.02, "{p:?} of {radius}");
+        }
+    }
+}
+
+#[test]
+fn closed_and_open_surfaces_keep_their_topology() {
+    let shapes = [
+        torus(24.0, 9.0, 3),
+        tube(15.0, 30, 4),
+        ring(8.0, 30.0, 5),
+        rectangle(30, 40, 0.0, 6),
+    ];
+    for shape in &shapes {
+        check(shape, &run(shape, STEP, 2));
+    }
+}
+
+#[test]
+fn topology_outlasts_any_edge_length() {
+    let close = rectangle(40, 30, 0.0, 7)
+        .with(rectangle(40, 30, 1.0, 8))
+        .with(ring(1.5, 20.0, 9))
+        .with(rectangle(60, 2, 5.0, 10))
+        .with(sphere(6.0, 11));
+    for shape in [close.clone(), close.noisy(0.15, 12)] {
+        for edge_length in [0.7, STEP, 5.0, 20.0] {
+            check(&shape, &run(&shape, edge_length, 2));
+        }
+    }
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_mesh() {
+    let shape = torus(20.0, 8.0, 13).with(ring(3.0, 25.0, 14));
+    let one = run(&shape, STEP, 1);
+    for threads in [2, 5] {
+        let more = run(&shape, STEP, threads);
+        assert_eq!(one.points, more.points);
+        assert_eq!(one.triangles, more.triangles);
+        assert_eq!(one.origin, more.origin);
+    }
+}
+
+#[test]
+fn rims_and_corners_stay() {
+    let shape = rectangle(30, 40, 0.0, 15);
+    let remeshed = run(&shape, STEP, 2);
+    let corners = [[0.0, 0.0], [30.0, 0.0], [30.0, 40.0], [0.0, 40.0]];
+    for corner in corners {
+        let there = |p: &Vec3| [p[0], p[1]] == corner;
+        assert!(remeshed.points.iter().any(there), "{corner:?}");
+    }
+    let twins = Fans::new(&remeshed.triangles, remeshed.points.len()).twins(&remeshed.triangles);
+    for e in (0..twins.len() as u32).filter(|&e| twins[e as usize] == NONE) {
+        let [x, y, _] = remeshed.points[ends(&remeshed.triangles, e).0 as usize];
+        let off = [x, 30.0 - x, y, 40.0 - y].map(f64::abs);
+        assert!(off.iter().any(|&o| o < 1e-9), "{x} {y}");
+    }
+}
+
+#[test]
+fn origins_lead_back_to_the_input() {
+    let shape = sphere(15.0, 16).with(rectangle(20, 20, 0.0, 17));
+    let mut sets = DisjointSets::new(shape.points.len());
+    for t in &shape.triangles {
+        sets.join(t[0] as usize, t[1] as usize);
+        sets.join(t[0] as usize, t[2] as usize);
+    }
+    let remeshed = run(&shape, STEP, 2);
+    for t in &remeshed.triangles {
+        let mut component = |p: u32| {
+            let triangle = remeshed.origin[p as usize].triangle as usize;
+            sets.find(shape.triangles[triangle][0] as usize)
+        };
+        let [a, b, c] = t.map(&mut component);
+        assert!(a == b && b == c);
+    }
+    for (p, origin) in remeshed.points.iter().zip(&remeshed.origin) {
+        let corners = shape.triangles[origin.triangle as usize].map(|p| shape.points[p as usize]);
+        let weights = origin.weights.map(f64::from);
+        assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-5);
+        let there: Vec3 = std::array::from_fn(|k| (0..3).map(|i| weights[i] * corners[i][k]).sum());
+        assert!(length(sub(*p, there)) < 0.1);
+    }
+}
