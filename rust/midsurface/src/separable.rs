@@ -89,56 +89,69 @@ fn weights(sigma: f64, radius: usize, room: [usize; 2]) -> Vec<f32> {
     raw.iter().enumerate().map(fit).collect()
 }
 
-/// Smooths `field` with the kernels of each part. `scratch` is overwritten.
+/// Smooths `field` with the kernels of each part. A field may have several values a voxel: a brick
+/// then holds one after the other for all its voxels. `scratch`, as long, is overwritten.
 pub(crate) fn smooth(
     batch: &Batch,
     kernels: &[[Kernel; 3]],
-    mut field: Vec<f32>,
+    field: Vec<f32>,
     scratch: &mut Vec<f32>,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
-    for axis in [2, 1, 0] {
-        execution.fill(scratch, BRICK, |brick, out| {
-            out.fill(0.0);
-            let kernel = &kernels[batch.part_of_brick[brick] as usize][axis];
-            let (directory, place) = batch.brick(brick);
-            let input = Neighbours::new(directory, place, axis, kernel.radius, &field);
-            if input.bricks.iter().all(Option::is_none) {
-                return;
-            }
-            let weights: [&[f32]; EDGE] =
-                std::array::from_fn(|k| kernel.at(place[axis] * EDGE + k));
-            match axis {
-                0 => input.along_x(|row, out| convolve_row(row, &weights, out), out),
-                _ => input.across(axis, &weights, |out, v, w| *out += w * v, out),
-            }
-        })?;
-        std::mem::swap(&mut field, scratch);
-    }
-    Ok(field)
+    let add = |sum: f32, value: f32, weight: f32| sum + weight * value;
+    filter(batch, kernels, Kernel::at, add, field, scratch, execution)
 }
 
-/// The largest value within the kernels' radius, along all axes. `scratch` is overwritten.
+/// The largest value within the kernels' radius, along all axes; at least 0. `scratch`, as long as
+/// `field`, is overwritten.
 pub(crate) fn local_maximum(
     batch: &Batch,
     kernels: &[[Kernel; 3]],
+    field: Vec<f32>,
+    scratch: &mut Vec<f32>,
+    execution: &mut Execution,
+) -> Result<Vec<f32>> {
+    // f32::max would ask whether either is no number.
+    let larger = |most: f32, value: f32, _| if value > most { value } else { most };
+    filter(
+        batch,
+        kernels,
+        |kernel, _| &kernel.weights[0],
+        larger,
+        field,
+        scratch,
+        execution,
+    )
+}
+
+/// Replaces every value by `combine(so far, value in reach, weight)` over all values in reach,
+/// starting from 0, along one axis after the other. `weights` are those of a kernel at an index.
+fn filter(
+    batch: &Batch,
+    kernels: &[[Kernel; 3]],
+    weights: impl Fn(&Kernel, usize) -> &[f32] + Sync,
+    combine: impl Fn(f32, f32, f32) -> f32 + Sync + Copy,
     mut field: Vec<f32>,
     scratch: &mut Vec<f32>,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
+    let size = field.len() / batch.part_of_brick.len().max(1);
     for axis in [2, 1, 0] {
-        execution.fill(scratch, BRICK, |brick, out| {
-            out.fill(0.0);
+        execution.fill(scratch, size, |brick, out| {
             let kernel = &kernels[batch.part_of_brick[brick] as usize][axis];
             let (directory, place) = batch.brick(brick);
-            let input = Neighbours::new(directory, place, axis, kernel.radius, &field);
+            let input = Neighbours::new(directory, place, axis, kernel.radius, &field, size);
             if input.bricks.iter().all(Option::is_none) {
+                out.fill(0.0);
                 return;
             }
-            let weights = [&kernel.weights[0][..]; EDGE];
-            match axis {
-                0 => input.along_x(|row, out| maximum_row(row, kernel.radius, out), out),
-                _ => input.across(axis, &weights, |out, v, _| *out = out.max(v), out),
+            let weights: [&[f32]; EDGE] =
+                std::array::from_fn(|k| weights(kernel, place[axis] * EDGE + k));
+            for (value, out) in out.chunks_exact_mut(BRICK).enumerate() {
+                match axis {
+                    0 => input.along_x(value, &weights, combine, out),
+                    _ => input.across(value, axis, &weights, combine, out),
+                }
             }
         })?;
         std::mem::swap(&mut field, scratch);
@@ -146,31 +159,20 @@ pub(crate) fn local_maximum(
     Ok(field)
 }
 
-/// `out[k] = weights[k] · row[k ..]`.
-fn convolve_row(row: &[f32], weights: &[&[f32]; EDGE], out: &mut [f32]) {
-    let first = weights[0];
-    // Away from the borders all eight kernels are one, and the sums run side by side.
-    if weights
-        .iter()
-        .all(|w| std::ptr::eq(w.as_ptr(), first.as_ptr()))
-    {
-        for (k, &w) in first.iter().enumerate() {
-            for (out, v) in out.iter_mut().zip(&row[k..k + EDGE]) {
-                *out += w * v;
-            }
-        }
-    } else {
-        for (k, out) in out.iter_mut().enumerate() {
-            *out = row[k..].iter().zip(weights[k]).map(|(v, w)| v * w).sum();
-        }
-    }
-}
+/// Rows of a brick that are worked on side by side: what fits into the registers.
+const ROWS: usize = 4;
 
-/// `out[k]` = the largest of `row[k ..= k + 2 · radius]`.
-fn maximum_row(row: &[f32], radius: usize, out: &mut [f32]) {
-    for k in 0..=2 * radius {
-        for (out, v) in out.iter_mut().zip(&row[k..k + EDGE]) {
-            *out = out.max(*v);
+/// Takes one value into every place of the rows that are worked on.
+#[inline(always)]
+fn take(
+    rows: &mut [[f32; EDGE]; ROWS],
+    input: [&[f32]; ROWS],
+    weight: f32,
+    combine: impl Fn(f32, f32, f32) -> f32,
+) {
+    for (row, input) in rows.iter_mut().zip(input) {
+        for (so_far, value) in row.iter_mut().zip(input) {
+            *so_far = combine(*so_far, *value, weight);
         }
     }
 }
@@ -178,7 +180,6 @@ fn maximum_row(row: &[f32], radius: usize, out: &mut [f32]) {
 /// The bricks in a row along one axis, as far as a filter reaches; empty ones are left out.
 struct Neighbours<'a> {
     bricks: Vec<Option<&'a [f32]>>,
-    radius: usize,
     /// Voxels from the start of the first of `bricks` to the first voxel the filter reaches.
     lead: usize,
 }
@@ -190,61 +191,93 @@ impl<'a> Neighbours<'a> {
         axis: usize,
         radius: usize,
         field: &'a [f32],
+        size: usize,
     ) -> Self {
         let reach = radius.div_ceil(EDGE);
         let brick = |i: usize| {
             let mut at = place;
             at[axis] = (at[axis] + i).checked_sub(reach)?;
-            let values = &field[directory.brick(at)? * BRICK..][..BRICK];
-            let empty = values.iter().fold(true, |empty, v| empty & (*v == 0.0));
-            (!empty).then_some(values)
+            let values = &field[directory.brick(at)? * size..][..size];
+            let is_zero = |values: &[f32]| values.iter().fold(true, |zero, v| zero & (*v == 0.0));
+            (!values.chunks_exact(LAYER).all(is_zero)).then_some(values)
         };
         Self {
             bricks: (0..=2 * reach).map(brick).collect(),
-            radius,
             lead: reach * EDGE - radius,
         }
     }
 
-    /// Applies `f(out, input, weight)` for every layer of the output across `axis`, which is not x,
-    /// and every layer of the input in its reach.
+    /// Filters one value of the voxels across `axis`, which is not x.
     #[inline(always)]
     fn across(
         &self,
+        value: usize,
         axis: usize,
         weights: &[&[f32]; EDGE],
-        f: impl Fn(&mut f32, f32, f32),
+        combine: impl Fn(f32, f32, f32) -> f32 + Copy,
         out: &mut [f32],
     ) {
-        // Along z a layer is 64 values in a piece; along y it is 8 in each of 8 slices.
-        let (size, pieces) = if axis == 2 { (LAYER, 1) } else { (EDGE, EDGE) };
-        for to in 0..EDGE {
-            for (offset, &weight) in weights[to].iter().enumerate() {
-                let at = to + offset + self.lead;
-                let Some(brick) = self.bricks[at / EDGE] else {
-                    continue;
-                };
-                for piece in 0..pieces {
-                    let input = &brick[piece * LAYER + at % EDGE * size..][..size];
-                    let out = &mut out[piece * LAYER + to * size..][..size];
-                    for (out, v) in out.iter_mut().zip(input) {
-                        f(out, *v, weight);
+        // From one voxel to the next along the axis, and from row to row across it.
+        let (step, next) = if axis == 2 { (LAYER, EDGE) } else { (EDGE, LAYER) };
+        for (to, weights) in weights.iter().enumerate() {
+            for first in (0..EDGE).step_by(ROWS) {
+                let row = |k: usize| (first + k) * next;
+                let mut rows = [[0.0; EDGE]; ROWS];
+                for (offset, &weight) in weights.iter().enumerate() {
+                    let at = to + offset + self.lead;
+                    if let Some(brick) = self.bricks[at / EDGE] {
+                        let layer = &brick[value * BRICK + at % EDGE * step..];
+                        let input = std::array::from_fn(|k| &layer[row(k)..][..EDGE]);
+                        take(&mut rows, input, weight, combine);
                     }
+                }
+                for (k, values) in rows.iter().enumerate() {
+                    out[to * step + row(k)..][..EDGE].copy_from_slice(values);
                 }
             }
         }
     }
 
-    /// Applies `f(row with the filter's radius on both sides, output row)` to every row along x.
-    fn along_x(&self, f: impl Fn(&[f32], &mut [f32]), out: &mut [f32]) {
-        let mut row = vec![0.0; self.bricks.len() * EDGE];
-        for (i, out) in out.chunks_exact_mut(EDGE).enumerate() {
-            for (brick, row) in self.bricks.iter().zip(row.chunks_exact_mut(EDGE)) {
+    /// Filters one value of the voxels along x.
+    #[inline(always)]
+    fn along_x(
+        &self,
+        value: usize,
+        weights: &[&[f32]; EDGE],
+        combine: impl Fn(f32, f32, f32) -> f32 + Copy,
+        out: &mut [f32],
+    ) {
+        let width = self.bricks.len() * EDGE;
+        let mut lines = vec![0.0; LAYER * width];
+        for (line, own) in lines.chunks_exact_mut(width).enumerate() {
+            for (brick, own) in self.bricks.iter().zip(own.chunks_exact_mut(EDGE)) {
                 if let Some(brick) = brick {
-                    row.copy_from_slice(&brick[i * EDGE..][..EDGE]);
+                    own.copy_from_slice(&brick[value * BRICK + line * EDGE..][..EDGE]);
                 }
             }
-            f(&row[self.lead..][..EDGE + 2 * self.radius], out);
+        }
+        // Away from the borders all eight kernels are one, and the rows run side by side.
+        let is_one = |w: &&[f32]| std::ptr::eq(w.as_ptr(), weights[0].as_ptr());
+        if weights.iter().all(is_one) {
+            let groups = lines.chunks_exact(ROWS * width);
+            for (lines, out) in groups.zip(out.chunks_exact_mut(ROWS * EDGE)) {
+                let mut rows = [[0.0; EDGE]; ROWS];
+                for (offset, &weight) in weights[0].iter().enumerate() {
+                    let from = self.lead + offset;
+                    let input = std::array::from_fn(|k| &lines[k * width + from..][..EDGE]);
+                    take(&mut rows, input, weight, combine);
+                }
+                out.copy_from_slice(rows.as_flattened());
+            }
+        } else {
+            for (line, out) in lines.chunks_exact(width).zip(out.chunks_exact_mut(EDGE)) {
+                for (k, out) in out.iter_mut().enumerate() {
+                    *out = line[self.lead + k..]
+                        .iter()
+                        .zip(weights[k])
+                        .fold(0.0, |so_far, (v, w)| combine(so_far, *v, *w));
+                }
+            }
         }
     }
 }
