@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 use rayon::ThreadPool;
 
-use crate::error::{Error, Result};
+use crate::error::{reserved, Error, Result};
 
 /// What the caller of a run is told. Called on the calling thread only.
 pub trait Observer {
@@ -116,6 +116,20 @@ impl<'a> Execution<'a> {
             let batch: Vec<R> = pool.install(|| items[range].par_iter().map(&f).collect());
             batch.into_iter().try_for_each(&mut keep)
         })
+    }
+
+    /// `f` of 0 .. `count`, in order: for large buffers, which nobody has to fill with zeros first.
+    pub fn collect<T: Send>(
+        &mut self,
+        count: usize,
+        f: impl Fn(usize) -> T + Sync,
+    ) -> Result<Vec<T>> {
+        let mut items = reserved(count)?;
+        self.batches(count, |pool, range| {
+            pool.install(|| items.par_extend(range.into_par_iter().map(&f)));
+            Ok(())
+        })?;
+        Ok(items)
     }
 
     /// Lets `f` fill `buffer` in pieces of `size`, each given its index.

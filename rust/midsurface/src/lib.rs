@@ -22,6 +22,7 @@
 //! only, never on the order of work: any number of threads gives the same mesh.
 #![forbid(unsafe_code)]
 
+mod block;
 mod bricks;
 mod centre;
 mod components;

@@ -55,28 +55,26 @@ pub(crate) fn ridge_field<'a>(
         .map(|part| Kernel::axes(scales[part], reach(part), h, &batch.directories[part]))
         .collect();
     let mut scratch = batch.field()?;
-    let ridge = smooth(&batch, &kernels, copy(&distance)?, &mut scratch, execution)?;
-    let mut mask = copy(&distance)?;
-    mask.iter_mut().for_each(|d| *d = f32::from(*d > 0.0));
+    let copy = of_distance(&distance, |d| d, execution)?;
+    let ridge = smooth(&batch, &kernels, copy, &mut scratch, execution)?;
+    let mask = of_distance(&distance, |d| f32::from(d > 0.0), execution)?;
     let mut fraction = smooth(&batch, &kernels, mask, &mut scratch, execution)?;
-    let thick = local_maximum(&batch, &kernels, copy(&distance)?, &mut scratch, execution)?;
+    let copy = of_distance(&distance, |d| d, execution)?;
+    let thick = local_maximum(&batch, &kernels, copy, &mut scratch, execution)?;
+    drop(scratch);
     execution.fill(&mut fraction, BRICK, |brick, fraction| {
         let sigma = scales[batch.part_of_brick[brick] as usize];
-        for (fraction, thick) in fraction.iter_mut().zip(&thick[brick * BRICK..]) {
-            *fraction /= endless_sheet(*thick, sigma);
+        // Neighbours mostly have the same maximum.
+        let (mut latest, mut endless) = (f32::NAN, 1.0);
+        for (fraction, &thick) in fraction.iter_mut().zip(&thick[brick * BRICK..]) {
+            if thick != latest {
+                (latest, endless) = (thick, endless_sheet(thick, sigma));
+            }
+            *fraction /= endless;
         }
     })?;
     drop(thick);
-    let mut sheets = sheets(
-        &batch,
-        &scales,
-        &distance,
-        &ridge,
-        h,
-        &mut scratch,
-        execution,
-    )?;
-    drop(scratch);
+    let mut sheets = sheets(&batch, &scales, &distance, &ridge, h, execution)?;
     let variance: Vec<f64> = kernels
         .iter()
         .map(|kernels| kernels[0].variance(h[0]))
@@ -110,10 +108,20 @@ fn warn_if_thick(parts: &[Part], scales: &[f64], execution: &mut Execution) {
     }
 }
 
-fn copy(field: &[f32]) -> Result<Vec<f32>> {
-    let mut copy = crate::error::reserved(field.len())?;
-    copy.extend_from_slice(field);
-    Ok(copy)
+/// A field made of the distance, voxel by voxel.
+fn of_distance(
+    distance: &[f32],
+    f: impl Fn(f32) -> f32 + Sync,
+    execution: &mut Execution,
+) -> Result<Vec<f32>> {
+    let field = execution.collect(distance.len() / BRICK, |brick| {
+        let mut values = [0.0; BRICK];
+        for (value, d) in values.iter_mut().zip(&distance[brick * BRICK..]) {
+            *value = f(*d);
+        }
+        values
+    })?;
+    Ok(field.into_flattened())
 }
 
 /// σ of each part: half the largest distance in the part's component.

@@ -218,7 +218,11 @@ impl<'a> Neighbours<'a> {
         out: &mut [f32],
     ) {
         // From one voxel to the next along the axis, and from row to row across it.
-        let (step, next) = if axis == 2 { (LAYER, EDGE) } else { (EDGE, LAYER) };
+        let (step, next) = if axis == 2 {
+            (LAYER, EDGE)
+        } else {
+            (EDGE, LAYER)
+        };
         for (to, weights) in weights.iter().enumerate() {
             for first in (0..EDGE).step_by(ROWS) {
                 let row = |k: usize| (first + k) * next;

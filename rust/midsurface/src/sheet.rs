@@ -10,15 +10,16 @@
 //! f across the sheet is a Gaussian, as it is for thin sheets. Since only the component along n counts, a slope of f within the sheet, as
 //! it is near every rim, does not pull the crest aside.
 
-use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
+use crate::block::{row, Block, Layer, SIDE};
+use crate::bricks::{Batch, BRICK, EDGE, LAYER};
 use crate::eigen::{eigenvalues, eigenvector, Symmetric};
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{dot, Vec3};
+use crate::grid::Vec3;
 use crate::separable::{smooth, Kernel};
 
 /// No sheet is taken to have shrunk by more, work units.
-const MOST_SHRUNK: f64 = 0.75;
+const MOST_SHRUNK: f32 = 0.75;
 
 /// What a voxel knows of its sheet: the unit normal, of either sign, and the distance from the voxel
 /// to the crest along it, work units. All zero where the voxel knows none. An array, so that the
@@ -31,11 +32,15 @@ pub(crate) fn normal(sheet: &Sheet) -> Option<Vec3> {
     (*sheet != [0.0; 4]).then_some([x, y, z])
 }
 
-/// Passes over all bricks that [`sheets`] makes, for its progress.
-pub(crate) const PASSES: usize = 23;
+/// Passes over all bricks that [`sheets`] and [`unshrink`] make, for their progress.
+pub(crate) const PASSES: usize = 7;
 
 /// An offset beyond this many σ (plus half a unit) is no longer that of a parabola.
 const TRUSTED: f64 = 1.3;
+
+/// Entries of the tensor e eᵀ − e_z² I: xx, yy, xy, xz, yz. Eigenvectors do not change when a
+/// multiple of the identity is taken off, so that five are enough.
+const ENTRIES: usize = 5;
 
 /// The sheets of all voxels near the parts. `scale` is σ of each part, `h` the work spacing.
 pub(crate) fn sheets(
@@ -44,18 +49,15 @@ pub(crate) fn sheets(
     distance: &[f32],
     ridge: &[f32],
     h: Vec3,
-    scratch: &mut Vec<f32>,
     execution: &mut Execution,
 ) -> Result<Vec<Sheet>> {
-    let mut sources: Vec<[f32; 3]> = zeros(ridge.len())?;
-    execution.fill(&mut sources, BRICK, |brick, out| {
-        let block = Block::gather(batch, brick, ridge);
-        for (i, out) in out.iter_mut().enumerate() {
-            let d = f64::from(distance[brick * BRICK + i]);
-            if d > 0.0 {
-                *out = source(block.derivatives(i, h).1, d);
-            }
+    let bricks = batch.part_of_brick.len();
+    let tensors = execution.collect(bricks, |brick| {
+        let distance = &distance[brick * BRICK..][..BRICK];
+        if distance.iter().all(|d| *d == 0.0) {
+            return [0.0; ENTRIES * BRICK];
         }
+        tensors(&Block::smooth(batch, brick, ridge), distance, h)
     })?;
     let kernels: Vec<[Kernel; 3]> = scale
         .iter()
@@ -65,124 +67,113 @@ pub(crate) fn sheets(
             Kernel::axes(rho, 1.7 * rho, h, directory)
         })
         .collect();
-    // Eigenvectors do not change when a multiple of the identity is taken off: e_z² of it, and
-    // five fields are left of six.
-    let entries: [fn(&[f32; 3]) -> f32; 5] = [
-        |e| e[0] * e[0] - e[2] * e[2],
-        |e| e[1] * e[1] - e[2] * e[2],
-        |e| e[0] * e[1],
-        |e| e[0] * e[2],
-        |e| e[1] * e[2],
-    ];
-    let mut tensor = Vec::with_capacity(entries.len());
-    for entry in entries {
-        let mut product = batch.field()?;
-        execution.fill(&mut product, BRICK, |brick, out| {
-            for (out, e) in out.iter_mut().zip(&sources[brick * BRICK..]) {
-                *out = entry(e);
-            }
-        })?;
-        tensor.push(smooth(batch, &kernels, product, scratch, execution)?);
-    }
-    drop(sources);
-    let mut sheets: Vec<Sheet> = zeros(ridge.len())?;
-    execution.fill(&mut sheets, BRICK, |brick, out| {
-        let block = Block::gather(batch, brick, ridge);
+    let mut scratch = zeros(bricks * BRICK * ENTRIES)?;
+    let tensors = tensors.into_flattened();
+    let tensors = smooth(batch, &kernels, tensors, &mut scratch, execution)?;
+    drop(scratch);
+    let sheets = execution.collect(bricks, |brick| {
         let near = Block::gather(batch, brick, distance);
+        if near.values.iter().all(|d| *d == 0.0) {
+            return [Sheet::default(); BRICK];
+        }
+        let tensors = &tensors[brick * BRICK * ENTRIES..][..BRICK * ENTRIES];
         let sigma = scale[batch.part_of_brick[brick] as usize];
-        for (i, out) in out.iter_mut().enumerate() {
-            let entry = brick * BRICK + i;
-            if distance[entry] > 0.0 || near.any_near(i) {
-                let [xx, yy, xy, xz, yz] = std::array::from_fn(|k| f64::from(tensor[k][entry]));
-                let tensor = [xx, yy, 0.0, xy, xz, yz];
-                *out = sheet(tensor, block.value(i), block.derivatives(i, h), sigma);
-            }
-        }
+        let ridge = Block::smooth(batch, brick, ridge);
+        sheets_of_brick(&ridge, tensors, &near.largest_near(), sigma, h)
     })?;
-    Ok(sheets)
+    Ok(sheets.into_flattened())
 }
 
-/// Takes back what smoothing shrank: under a Gaussian of variance σ² the crest of a curved sheet
-/// moves by ½ σ² div n against n, as the heat equation says for a function of the distance to it.
-pub(crate) fn unshrink(
-    batch: &Batch,
-    variance: &[f64],
-    sheets: &mut Vec<Sheet>,
-    h: Vec3,
-    execution: &mut Execution,
-) -> Result<()> {
-    let mut corrected: Vec<Sheet> = zeros(sheets.len())?;
-    execution.fill(&mut corrected, BRICK, |brick, out| {
-        let (directory, _) = batch.brick(brick);
-        let half_variance = 0.5 * variance[batch.part_of_brick[brick] as usize];
-        for (i, out) in out.iter_mut().enumerate() {
-            *out = sheets[brick * BRICK + i];
-            if normal(out).is_some() {
-                let shift = half_variance * divergence(directory, brick, i, sheets, h);
-                out[3] += shift.clamp(-MOST_SHRUNK, MOST_SHRUNK) as f32;
-            }
-        }
-    })?;
-    *sheets = corrected;
-    Ok(())
+/// A layer of entry k of a brick's tensors.
+fn entry(k: usize, z: usize) -> std::ops::Range<usize> {
+    let first = k * BRICK + z * LAYER;
+    first..first + LAYER
 }
 
-/// div n at voxel i of the brick at `place`; differences with unknown neighbours are left out.
-fn divergence(directory: &Directory, brick: usize, i: usize, sheets: &[Sheet], h: Vec3) -> f64 {
-    let voxel = [i % EDGE, i / EDGE % EDGE, i / LAYER].map(|v| v as isize);
-    let place = directory.places[brick - directory.first];
-    let known = |at: [isize; 3]| {
-        let within = at.iter().all(|v| (0..EDGE as isize).contains(v));
-        let entry = if within {
-            let [x, y, z] = at.map(|v| v as usize);
-            brick * BRICK + z * LAYER + y * EDGE + x
-        } else {
-            neighbour(directory, place, at)?
-        };
-        normal(&sheets[entry])
-    };
-    let Some(own) = known(voxel) else {
-        return 0.0;
-    };
-    (0..3)
-        .map(|axis| {
-            let along_axis = |step: isize| {
-                let mut at = voxel;
-                at[axis] += step;
-                known(at).map(|n| (n[axis] * dot(n, own).signum(), step as f64))
-            };
-            let (low, high) = (along_axis(-1), along_axis(1));
-            let (a, b) = (
-                low.unwrap_or((own[axis], 0.0)),
-                high.unwrap_or((own[axis], 0.0)),
-            );
-            if a.1 == b.1 {
-                0.0
-            } else {
-                (b.0 - a.0) / ((b.1 - a.1) * h[axis])
-            }
-        })
-        .sum()
+/// The tensors of a brick's voxels before smoothing, weighted; zero outside the label.
+fn tensors(ridge: &Block<f32>, distance: &[f32], h: Vec3) -> [f32; ENTRIES * BRICK] {
+    let mut tensors = [0.0; ENTRIES * BRICK];
+    for (z, distance) in distance.chunks_exact(LAYER).enumerate() {
+        if distance.iter().all(|d| *d == 0.0) {
+            continue;
+        }
+        let (_, hessian) = ridge.derivatives(z, h);
+        let mut products = [[0.0; LAYER]; ENTRIES];
+        for i in 0..LAYER {
+            let e = source(hessian.each_ref().map(|entry| entry[i]), distance[i]);
+            let zz = e[2] * e[2];
+            products[0][i] = e[0] * e[0] - zz;
+            products[1][i] = e[1] * e[1] - zz;
+            products[2][i] = e[0] * e[1];
+            products[3][i] = e[0] * e[2];
+            products[4][i] = e[1] * e[2];
+        }
+        for (k, product) in products.iter().enumerate() {
+            tensors[entry(k, z)].copy_from_slice(product);
+        }
+    }
+    tensors
 }
 
 /// The eigenvector of the most negative curvature, times the square root of its weight.
-fn source(hessian: Symmetric, distance: f64) -> [f32; 3] {
+#[inline(always)]
+fn source(hessian: Symmetric<f32>, distance: f32) -> [f32; 3] {
     let [first, second, _] = eigenvalues(hessian);
-    if first >= 0.0 {
-        return [0.0; 3];
-    }
     let e = eigenvector(hessian, first);
-    let clear = ((first - second.min(0.0)) / first).clamp(0.0, 1.0);
+    let second = if second < 0.0 { second } else { 0.0 };
+    // How clearly the first one stands out, 0 to 1.
+    let clear = (first - second) / first;
+    let clear = if first < 0.0 && clear > 0.0 {
+        clear
+    } else {
+        0.0
+    };
     let weight = clear.sqrt() * distance * distance;
-    e.map(|v| (v * weight) as f32)
+    e.map(|v| v * weight)
 }
 
-fn sheet(
-    tensor: Symmetric,
-    value: f64,
-    (gradient, hessian): (Vec3, Symmetric),
+/// The sheets of a brick's voxels from the smoothed tensors, where the label is `near`.
+fn sheets_of_brick(
+    ridge: &Block<f32>,
+    tensors: &[f32],
+    near: &[f32],
     sigma: f64,
-) -> Sheet {
+    h: Vec3,
+) -> [Sheet; BRICK] {
+    let mut sheets = [Sheet::default(); BRICK];
+    let most = (TRUSTED * sigma + 0.5) as f32;
+    for (z, near) in near.chunks_exact(LAYER).enumerate() {
+        if near.iter().all(|d| *d == 0.0) {
+            continue;
+        }
+        let value = ridge.layer(z);
+        let (gradient, hessian) = ridge.derivatives(z, h);
+        let tensor: [&[f32]; ENTRIES] = std::array::from_fn(|k| &tensors[entry(k, z)]);
+        let mut found: [Layer; 4] = [[0.0; LAYER]; 4];
+        for i in 0..LAYER {
+            let [xx, yy, xy, xz, yz] = tensor.map(|entry| entry[i]);
+            let sheet = sheet(
+                [xx, yy, 0.0, xy, xz, yz],
+                value[i],
+                gradient.each_ref().map(|g| g[i]),
+                hessian.each_ref().map(|h| h[i]),
+            );
+            let known = (near[i] > 0.0) & (sheet[3].abs() <= most);
+            for (found, v) in found.iter_mut().zip(sheet) {
+                found[i] = if known { v } else { 0.0 };
+            }
+        }
+        for (i, sheet) in sheets[z * LAYER..][..LAYER].iter_mut().enumerate() {
+            *sheet = found.each_ref().map(|found| found[i]);
+        }
+    }
+    sheets
+}
+
+/// Normal and offset from a smoothed tensor and the ridge field's derivatives; the offset is no
+/// number where the field has no crest along the normal.
+#[inline(always)]
+fn sheet(tensor: Symmetric<f32>, value: f32, gradient: [f32; 3], hessian: Symmetric<f32>) -> Sheet {
     let n = eigenvector(tensor, eigenvalues(tensor)[2]);
     let [xx, yy, zz, xy, xz, yz] = hessian;
     let bent = [
@@ -192,113 +183,100 @@ fn sheet(
     ];
     let slope = dot(gradient, n);
     let curvature = value * dot(n, bent) - slope * slope;
-    let offset = -slope * value / curvature;
-    let known = value > 0.0 && curvature < 0.0 && offset.abs() <= TRUSTED * sigma + 0.5;
-    if known {
-        [n[0], n[1], n[2], offset].map(|v| v as f32)
+    let has_crest = (value > 0.0) & (curvature < 0.0);
+    let offset = if has_crest {
+        -slope * value / curvature
     } else {
-        Sheet::default()
-    }
+        f32::NAN
+    };
+    [n[0], n[1], n[2], offset]
 }
 
-/// A brick with one voxel around it: shape (10, 10, 10), x fastest.
-struct Block {
-    values: Vec<f32>,
+#[inline(always)]
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-const SIDE: usize = EDGE + 2;
-
-impl Block {
-    fn gather(batch: &Batch, brick: usize, field: &[f32]) -> Self {
+impl Block<f32> {
+    /// A smooth field around a brick.
+    fn smooth(batch: &Batch, brick: usize, field: &[f32]) -> Self {
+        let mut block = Self::gather(batch, brick, field);
         let (directory, place) = batch.brick(brick);
-        let mut values = vec![0.0; SIDE * SIDE * SIDE];
-        for z in 0..SIDE {
-            for y in 0..SIDE {
-                let row = &mut values[(z * SIDE + y) * SIDE..][..SIDE];
-                let at = |x: usize| [x, y, z].map(|v| v as isize - 1);
-                let middle = neighbour(directory, place, at(1));
-                if let Some(entry) = middle {
-                    row[1..=EDGE].copy_from_slice(&field[entry..][..EDGE]);
-                }
-                for x in [0, SIDE - 1] {
-                    let entry = neighbour(directory, place, at(x));
-                    row[x] = entry.map_or(0.0, |entry| field[entry]);
-                }
-            }
-        }
-        let mut block = Self { values };
         block.continue_beyond(directory, place);
         block
     }
+}
 
-    /// Continues the field linearly across the borders of the volume.
-    fn continue_beyond(&mut self, directory: &Directory, place: [usize; 3]) {
+/// Takes back what smoothing shrank: under a Gaussian of variance σ² the crest of a curved sheet
+/// moves by ½ σ² div n against n, as the heat equation says for a function of the distance to it.
+pub(crate) fn unshrink(
+    batch: &Batch,
+    variance: &[f64],
+    sheets: &mut [Sheet],
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<()> {
+    let shifts = execution.collect(batch.part_of_brick.len(), |brick| {
+        let own = &sheets[brick * BRICK..][..BRICK];
+        if own.iter().all(|sheet| *sheet == Sheet::default()) {
+            return [0.0; BRICK];
+        }
+        let half_variance = (0.5 * variance[batch.part_of_brick[brick] as usize]) as f32;
+        divergence(&Block::gather(batch, brick, sheets).values, h)
+            .map(|divergence| (half_variance * divergence).clamp(-MOST_SHRUNK, MOST_SHRUNK))
+    })?;
+    execution.fill(sheets, BRICK, |brick, sheets| {
+        for (sheet, shift) in sheets.iter_mut().zip(&shifts[brick]) {
+            sheet[3] += shift;
+        }
+    })
+}
+
+/// div n at the voxels of a block's brick, differences with unknown neighbours left out; 0 at voxels
+/// that know no sheet.
+fn divergence(sheets: &[Sheet], h: Vec3) -> [f32; BRICK] {
+    let mut sum = [0.0; BRICK];
+    for (i, sum) in sum.chunks_exact_mut(EDGE).enumerate() {
+        let first = row(i % EDGE, i / EDGE);
+        let normals = |at: usize| -> [[f32; EDGE]; 3] {
+            let mut normals = [[0.0; EDGE]; 3];
+            for (x, sheet) in sheets[at..at + EDGE].iter().enumerate() {
+                for (normals, v) in normals.iter_mut().zip(sheet) {
+                    normals[x] = *v;
+                }
+            }
+            normals
+        };
+        let own = normals(first);
         for axis in 0..3 {
             let stride = [1, SIDE, SIDE * SIDE][axis];
-            let last = directory.dimensions[axis] - 1;
-            let low = (place[axis] == 0).then_some((0, 1isize));
-            let high = (last / EDGE == place[axis]).then_some((last % EDGE + 2, -1));
-            for (layer, inward) in low.into_iter().chain(high) {
-                for i in 0..SIDE * SIDE {
-                    let (a, b) = (i % SIDE, i / SIDE);
-                    let other = [[SIDE, SIDE * SIDE], [1, SIDE * SIDE], [1, SIDE]][axis];
-                    let at = a * other[0] + b * other[1] + layer * stride;
-                    let step = |k: isize| (at as isize + inward * k * stride as isize) as usize;
-                    let second = if last == 0 { step(1) } else { step(2) };
-                    self.values[at] = 2.0 * self.values[step(1)] - self.values[second];
-                }
+            let (low, high) = (normals(first - stride), normals(first + stride));
+            let per_step = 1.0 / h[axis] as f32;
+            for x in 0..EDGE {
+                let at = |n: &[[f32; EDGE]; 3]| [n[0][x], n[1][x], n[2][x]];
+                sum[x] += per_step * difference(at(&low), at(&own), at(&high), axis);
             }
         }
     }
-
-    /// Position of voxel i of the brick.
-    fn position(i: usize) -> usize {
-        ((i / LAYER + 1) * SIDE + i / EDGE % EDGE + 1) * SIDE + i % EDGE + 1
-    }
-
-    /// The field at voxel i of the brick.
-    fn value(&self, i: usize) -> f64 {
-        self.values[Self::position(i)].into()
-    }
-
-    /// Whether voxel i or one of its 26 neighbours is not zero.
-    fn any_near(&self, i: usize) -> bool {
-        let p = Self::position(i);
-        [0, SIDE, 2 * SIDE].iter().any(|dy| {
-            [0, SIDE * SIDE, 2 * SIDE * SIDE].iter().any(|dz| {
-                let from = p + dy + dz - SIDE - SIDE * SIDE - 1;
-                self.values[from..from + 3].iter().any(|&v| v > 0.0)
-            })
-        })
-    }
-
-    /// Gradient and Hessian at voxel i by central differences.
-    fn derivatives(&self, i: usize, h: Vec3) -> (Vec3, Symmetric) {
-        let p = Self::position(i);
-        let stride = [1, SIDE, SIDE * SIDE];
-        let at = |q: usize| f64::from(self.values[q]);
-        let centre = at(p);
-        let gradient =
-            std::array::from_fn(|a| (at(p + stride[a]) - at(p - stride[a])) / (2.0 * h[a]));
-        let second =
-            |a: usize| (at(p + stride[a]) - 2.0 * centre + at(p - stride[a])) / (h[a] * h[a]);
-        let mixed = |a: usize, b: usize| {
-            let (s, t) = (stride[a], stride[b]);
-            (at(p + s + t) - at(p + s - t) - at(p + t - s) + at(p - s - t)) / (4.0 * h[a] * h[b])
-        };
-        let hessian = [
-            second(0),
-            second(1),
-            second(2),
-            mixed(0, 1),
-            mixed(0, 2),
-            mixed(1, 2),
-        ];
-        (gradient, hessian)
-    }
+    sum
 }
 
-/// Entry of a voxel given relative to a brick, from −1 to 8 along each axis.
-fn neighbour(directory: &Directory, place: [usize; 3], at: [isize; 3]) -> Option<usize> {
-    directory.entry_at(std::array::from_fn(|a| (place[a] * EDGE) as isize + at[a]))
+/// Difference of the normals' components along an axis, a step from `low` to `own` and one to
+/// `high`, those turned to the side of `own`; unknown ones are zero, and so is the difference where
+/// `own` is.
+#[inline(always)]
+fn difference(low: [f32; 3], own: [f32; 3], high: [f32; 3], axis: usize) -> f32 {
+    let along_axis = |n: [f32; 3]| {
+        let turned = if dot(n, own) < 0.0 { -n[axis] } else { n[axis] };
+        if dot(n, n) > 0.0 {
+            (turned, 1.0)
+        } else {
+            (own[axis], 0.0)
+        }
+    };
+    let ((low, below), (high, above)) = (along_axis(low), along_axis(high));
+    let steps: f32 = below + above;
+    let per_step = if steps > 1.5 { 0.5 } else { steps };
+    let known = if dot(own, own) > 0.0 { 1.0 } else { 0.0 };
+    known * per_step * (high - low)
 }

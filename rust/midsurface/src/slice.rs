@@ -175,6 +175,18 @@ impl<'a> Slice<'a> {
         std::array::from_fn(|a| p[a].min((n[a] - 1) as f64 * h[a] - p[a]) < 1e-2 * h[a])
     }
 
+    /// A point that lies beyond the border by no more than rounding does, put back.
+    pub fn back_inside(&self, p: Point) -> Point {
+        let inside = self.clamp(p);
+        let h = self.h();
+        let is_rounding = (0..2).all(|a| (p[a] - inside[a]).abs() < 1e-4 * h[a]);
+        if is_rounding {
+            inside
+        } else {
+            p
+        }
+    }
+
     /// The nearest point within the volume.
     pub fn clamp(&self, p: Point) -> Point {
         let (h, n) = (self.h(), self.directory().dimensions);

@@ -115,7 +115,7 @@ impl Polylines {
 
     /// The direction across all slices: along which the points of a slice vary least.
     fn slice_normal(&self, groups: &[Vec<usize>], centres: &[Vec3]) -> Vec3 {
-        let mut scatter: Symmetric = [0.0; 6];
+        let mut scatter: Symmetric<f64> = [0.0; 6];
         for (group, centre) in groups.iter().zip(centres) {
             for p in group.iter().flat_map(|&line| self.points_of(line)) {
                 let [x, y, z] = sub(*p, *centre);

@@ -167,6 +167,8 @@ fn follow(
         let Some(q) = crest(slice, predicted) else {
             break;
         };
+        // A sheet may leave through the very edge of the volume, and its line run along that.
+        let q = slice.back_inside(q);
         if i > 2 && closes(p, q, start, direction, step) {
             return (points, End::Closed);
         }

@@ -1,0 +1,151 @@
+//! A brick with one voxel around it, for differences between neighbouring voxels.
+
+use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
+use crate::eigen::Symmetric;
+use crate::grid::Vec3;
+
+/// Voxels along a block's edge.
+pub(crate) const SIDE: usize = EDGE + 2;
+
+/// A value for every voxel of one layer of a brick: shape (8, 8), x fastest.
+pub(crate) type Layer = [f32; LAYER];
+
+/// The voxels of a brick and those around it: shape (10, 10, 10), x fastest.
+pub(crate) struct Block<T> {
+    pub values: [T; SIDE * SIDE * SIDE],
+}
+
+impl<T: Copy + Default> Block<T> {
+    /// Reads a field around a brick; what lies outside the part's bricks has the default value.
+    pub fn gather(batch: &Batch, brick: usize, field: &[T]) -> Self {
+        let (directory, place) = batch.brick(brick);
+        let mut values = [T::default(); SIDE * SIDE * SIDE];
+        for side in 0..27 {
+            let side = [side % 3, side / 3 % 3, side / 9];
+            let Some(brick) = neighbour(directory, place, side) else {
+                continue;
+            };
+            let [x, y, z] = side.map(shared);
+            for k in 0..z.count {
+                for j in 0..y.count {
+                    let to = ((z.to + k) * SIDE + y.to + j) * SIDE + x.to;
+                    let from = brick * BRICK + (z.from + k) * LAYER + (y.from + j) * EDGE + x.from;
+                    values[to..to + x.count].copy_from_slice(&field[from..from + x.count]);
+                }
+            }
+        }
+        Self { values }
+    }
+}
+
+/// The brick next to the one at `place`: 0, 1, 2 are below, the same and above along each axis.
+fn neighbour(directory: &Directory, place: [usize; 3], side: [usize; 3]) -> Option<usize> {
+    let mut at = place;
+    for (at, side) in at.iter_mut().zip(side) {
+        *at = (*at + side).checked_sub(1)?;
+    }
+    directory.brick(at)
+}
+
+/// The voxels that a block and one of its bricks share along an axis.
+struct Shared {
+    count: usize,
+    from: usize,
+    to: usize,
+}
+
+fn shared(side: usize) -> Shared {
+    let (count, from, to) = [(1, EDGE - 1, 0), (EDGE, 0, 1), (1, 0, SIDE - 1)][side];
+    Shared { count, from, to }
+}
+
+/// Position in a block of the first voxel of row y in layer z of its brick.
+pub(crate) fn row(y: usize, z: usize) -> usize {
+    ((z + 1) * SIDE + y + 1) * SIDE + 1
+}
+
+impl Block<f32> {
+    /// Continues the field linearly across the borders of the volume, the block's brick being at
+    /// `place`.
+    pub fn continue_beyond(&mut self, directory: &Directory, place: [usize; 3]) {
+        for axis in 0..3 {
+            let stride = [1, SIDE, SIDE * SIDE][axis];
+            let last = directory.dimensions[axis] - 1;
+            let low = (place[axis] == 0).then_some((0, 1isize));
+            let high = (last / EDGE == place[axis]).then_some((last % EDGE + 2, -1));
+            for (layer, inward) in low.into_iter().chain(high) {
+                for i in 0..SIDE * SIDE {
+                    let (a, b) = (i % SIDE, i / SIDE);
+                    let other = [[SIDE, SIDE * SIDE], [1, SIDE * SIDE], [1, SIDE]][axis];
+                    let at = a * other[0] + b * other[1] + layer * stride;
+                    let step = |k: isize| (at as isize + inward * k * stride as isize) as usize;
+                    let second = if last == 0 { step(1) } else { step(2) };
+                    self.values[at] = 2.0 * self.values[step(1)] - self.values[second];
+                }
+            }
+        }
+    }
+
+    /// The largest value among each voxel of the brick and its 26 neighbours.
+    pub fn largest_near(&self) -> [f32; BRICK] {
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let three = |v: &[f32], i: usize, stride: usize| {
+            larger(larger(v[i], v[i + stride]), v[i + 2 * stride])
+        };
+        let mut along_x = [0.0; SIDE * SIDE * EDGE];
+        let rows = self.values.chunks_exact(SIDE);
+        for (values, out) in rows.zip(along_x.chunks_exact_mut(EDGE)) {
+            for (x, out) in out.iter_mut().enumerate() {
+                *out = three(values, x, 1);
+            }
+        }
+        let mut along_y = [0.0; SIDE * LAYER];
+        let layers = along_x.chunks_exact(SIDE * EDGE);
+        for (values, out) in layers.zip(along_y.chunks_exact_mut(LAYER)) {
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = three(values, i, EDGE);
+            }
+        }
+        std::array::from_fn(|i| three(&along_y, i, LAYER))
+    }
+
+    /// The field in layer z of the brick.
+    pub fn layer(&self, z: usize) -> Layer {
+        std::array::from_fn(|i| self.values[row(i / EDGE, z) + i % EDGE])
+    }
+
+    /// Gradient and Hessian in layer z of the brick, by central differences.
+    pub fn derivatives(&self, z: usize, h: Vec3) -> ([Layer; 3], Symmetric<Layer>) {
+        let stride = [1, SIDE, SIDE * SIDE];
+        let mut gradient = [[0.0; LAYER]; 3];
+        let mut hessian = [[0.0; LAYER]; 6];
+        for y in 0..EDGE {
+            let first = row(y, z);
+            let at = |from: usize| &self.values[from..from + EDGE];
+            let centre = at(first);
+            for axis in 0..3 {
+                let (low, high) = (at(first - stride[axis]), at(first + stride[axis]));
+                let once = (0.5 / h[axis]) as f32;
+                let twice = (1.0 / (h[axis] * h[axis])) as f32;
+                for x in 0..EDGE {
+                    gradient[axis][y * EDGE + x] = once * (high[x] - low[x]);
+                    // Differences first, since they are exact where the field is smooth.
+                    let bend = (high[x] - centre[x]) - (centre[x] - low[x]);
+                    hessian[axis][y * EDGE + x] = twice * bend;
+                }
+            }
+            for (entry, (a, b)) in [(0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+                let (s, t) = (stride[a], stride[b]);
+                let (high, low) = (first + t, first - t);
+                let corners = [at(high + s), at(high - s), at(low + s), at(low - s)];
+                let scale = (0.25 / (h[a] * h[b])) as f32;
+                for x in 0..EDGE {
+                    let [above, below, above_low, below_low] = corners.map(|v| v[x]);
+                    hessian[3 + entry][y * EDGE + x] =
+                        scale * ((above - below) - (above_low - below_low));
+                }
+            }
+        }
+        (gradient, hessian)
+    }
+}
