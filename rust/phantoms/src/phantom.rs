@@ -88,8 +88,8 @@ impl Frame {
 pub enum Thickness {
     /// Everywhere the same.
     Constant(f64),
-    /// As thin as voxels can be without a hole, one layer of them: neighbours share a face (6) or
-    /// at least a corner (26).
+    /// As thin as voxels can be without a hole, one layer of them: nothing gets through it by faces
+    /// of voxels (26: the layer hangs together by corners), nor by corners (6: by faces).
     OneVoxel(Neighbours),
     /// `from` at the point `start`, `to` at `start + along`, linear in between, constant beyond.
     Linear {
@@ -153,6 +153,41 @@ pub struct Slab {
     pub shape: Shape,
     pub thickness: Thickness,
     pub label: u8,
+}
+
+impl Slab {
+    /// Whether a voxel centre that lies above or below the mid-surface is within the slab.
+    fn holds(&self, p: Vec3, closest: &Closest, frame: &Frame) -> bool {
+        match self.thickness {
+            Thickness::OneVoxel(neighbours) => {
+                closest.offset.abs() <= 0.5 * length(frame.spacing)
+                    && self.is_nearer_than_a_neighbour_beyond(p, closest.offset, neighbours, frame)
+            }
+            _ => closest.offset.abs() <= 0.5 * self.thickness.at(p, closest.normal, frame),
+        }
+    }
+
+    /// Whether the surface passes between this voxel and a neighbour, nearer to this one: then
+    /// nothing gets from voxel to voxel through the surface beside the voxels chosen.
+    fn is_nearer_than_a_neighbour_beyond(
+        &self,
+        p: Vec3,
+        offset: f64,
+        neighbours: Neighbours,
+        frame: &Frame,
+    ) -> bool {
+        let index = frame.index(p);
+        (0..27).any(|step| {
+            let steps = [step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1];
+            let apart: i32 = steps.iter().map(|s: &i32| s.abs()).sum();
+            if apart == 0 || (neighbours == Neighbours::TwentySix && apart > 1) {
+                return false;
+            }
+            let beyond = frame.world(std::array::from_fn(|a| index[a] + f64::from(steps[a])));
+            let other = self.shape.closest(beyond).offset;
+            (offset > 0.0) != (other > 0.0) && offset.abs() <= other.abs()
+        })
+    }
 }
 
 /// What a mesh of the mid-surface must be like.
@@ -265,8 +300,11 @@ impl Phantom {
                 if slab.shape.least_distance(middle) > radius + step {
                     continue;
                 }
-                for n in block.indices() {
-                    let closest = slab.shape.closest(place(n));
+                for p in block.indices().map(place) {
+                    if slab.shape.is_far(p, step) {
+                        continue;
+                    }
+                    let closest = slab.shape.closest(p);
                     let near = closest.offset > -0.5 * step && closest.offset <= 0.5 * step;
                     if near && closest.distance <= step && frame.holds(closest.point) {
                         samples.push(closest.point);
@@ -349,10 +387,9 @@ fn label_voxels(frame: &Frame, slabs: &[Slab]) -> Vec<u8> {
 fn label_at(frame: &Frame, slabs: &[&Slab], p: Vec3) -> u8 {
     slabs
         .iter()
+        .filter(|slab| !slab.shape.is_far(p, 0.5 * slab.thickness.most(frame)))
         .map(|slab| (slab.shape.closest(p), slab))
-        .filter(|(c, slab)| {
-            c.within_rim && c.offset.abs() <= 0.5 * slab.thickness.at(p, c.normal, frame)
-        })
+        .filter(|(closest, slab)| closest.within_rim && slab.holds(p, closest, frame))
         .min_by(|a, b| a.0.distance.total_cmp(&b.0.distance))
         .map_or(0, |(_, slab)| slab.label)
 }

@@ -172,6 +172,11 @@ impl Shape {
         }
     }
 
+    /// Whether it is seen at a glance that the surface is farther away than this.
+    pub(crate) fn is_far(&self, p: Vec3, reach: f64) -> bool {
+        matches!(self, Shape::Gyroid { .. }) && self.least_distance(p) > reach
+    }
+
     /// A distance that the surface is at least away from p; cheaper than [`Shape::closest`] where
     /// that is dear, and right where it may fail.
     pub(crate) fn least_distance(&self, p: Vec3) -> f64 {
