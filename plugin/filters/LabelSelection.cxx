@@ -51,6 +51,20 @@ bool ReadLabels(const SegmentationVolume& volume, int threads, std::vector<int64
   }
 }
 
+/** What tells the chosen array from others; "" where there is none. */
+std::string ArrayName(const ArrayFinder& find, vtkDataObject* input)
+{
+  for (vtkImageData* image : ListImages(input))
+  {
+    const ChosenArray chosen = find(image);
+    if (chosen.Labels() && chosen.Array->GetName())
+    {
+      return std::to_string(chosen.Association) + " " + chosen.Array->GetName();
+    }
+  }
+  return "";
+}
+
 /** The names of a block come before those of the whole. */
 void ReadNames(LabelTable& table, vtkDataObject* input)
 {
@@ -66,8 +80,7 @@ void ReadNames(LabelTable& table, vtkDataObject* input)
 } // namespace
 
 //------------------------------------------------------------------------------
-void LabelSelection::Update(
-  const ArrayFinder& find, vtkMTimeType choiceTime, vtkDataObject* input, int threads)
+void LabelSelection::Update(const ArrayFinder& find, vtkDataObject* input, int threads)
 {
   LabelTable table;
   try
@@ -88,7 +101,7 @@ void LabelSelection::Update(
   if (table.IsKnown())
   {
     this->Table = std::move(table);
-    this->FoundChoiceTime = choiceTime;
+    this->FoundArray = ArrayName(find, input);
     this->RefreshTicks();
     this->Found->RemoveAllArrays();
     for (const auto& entry : this->Table.Entries())
@@ -142,13 +155,13 @@ void LabelSelection::RefreshTicks()
 }
 
 //------------------------------------------------------------------------------
-void LabelSelection::RequestChanged(vtkMTimeType choiceTime)
+void LabelSelection::RequestChanged(const ArrayFinder& find, vtkDataObject* input)
 {
   this->Request = this->Requested->GetNumberOfArrays() == 0 ? Meaning::All : Meaning::Listed;
   this->RefreshTicks();
   const auto& found = this->Table.Entries();
   // A list of all labels of another array says nothing about this one's.
-  const bool isAboutFound = !this->Ticks.empty() && choiceTime == this->FoundChoiceTime &&
+  const bool isAboutFound = !this->Ticks.empty() && this->FoundArray == ArrayName(find, input) &&
     this->Ticks.size() == found.size() &&
     std::all_of(this->Ticks.begin(), this->Ticks.end(),
       [this](const auto& tick) { return this->Table.Holds(tick.first); });

@@ -35,12 +35,11 @@ public:
    * Brings `Found` up to date with the arrays of `input`, which may be null, empty or a composite.
    * Arrays that did not change are not read again. An array that holds no labels adds none: the
    * run that follows has to say so. Where there are many processes, all have to call this at once.
-   * @param choiceTime when the array was chosen that `find` looks up.
    */
-  void Update(const ArrayFinder& find, vtkMTimeType choiceTime, vtkDataObject* input, int threads);
+  void Update(const ArrayFinder& find, vtkDataObject* input, int threads);
 
-  /** To be called after every change of `Requested`; `choiceTime` as for Update. */
-  void RequestChanged(vtkMTimeType choiceTime);
+  /** To be called after every change of `Requested`; the arguments as for Update. */
+  void RequestChanged(const ArrayFinder& find, vtkDataObject* input);
 
   /**
    * Tells `run` which labels of `volume` to extract.
@@ -74,8 +73,8 @@ private:
   LabelTable Table;
   /** The labels that `Requested` means. */
   std::map<int64_t, bool> Ticks;
-  /** When the array was chosen that `Found` belongs to. */
-  vtkMTimeType FoundChoiceTime = 0;
+  /** The name of the array that `Found` belongs to. */
+  std::string FoundArray;
 };
 
 #endif

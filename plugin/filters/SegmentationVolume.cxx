@@ -123,6 +123,34 @@ vtkDataArray* ChosenArray::Labels() const
 }
 
 //------------------------------------------------------------------------------
+ChosenArray FindFirstArray(vtkImageData* image)
+{
+  ChosenArray first{ nullptr, vtkDataObject::FIELD_ASSOCIATION_POINTS, "" };
+  for (const int association :
+    { vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataObject::FIELD_ASSOCIATION_CELLS })
+  {
+    vtkDataSetAttributes* fields = image->GetAttributes(association);
+    const ChosenArray active{ fields->GetScalars(), association, "" };
+    if (active.Labels())
+    {
+      return active;
+    }
+    for (int index = 0; index < fields->GetNumberOfArrays(); ++index)
+    {
+      const ChosenArray candidate{ fields->GetAbstractArray(index), association, "" };
+      const bool isEarlier = !first.Array ||
+        (first.Association == association &&
+          Quoted(candidate.Array->GetName()) < Quoted(first.Array->GetName()));
+      if (candidate.Labels() && isEarlier)
+      {
+        first = candidate;
+      }
+    }
+  }
+  return first;
+}
+
+//------------------------------------------------------------------------------
 SegmentationVolume::SegmentationVolume(vtkImageData* image, const ChosenArray& chosen)
   : Source(image)
   , Labels(chosen.Labels())
@@ -144,7 +172,13 @@ SegmentationVolume::SegmentationVolume(vtkImageData* image, const ChosenArray& c
       " components, but a segmentation has one label a voxel: choose another array.");
   }
   this->DescribeScalars();
-  this->DescribeGrid();
+  this->DescribeGrid(image->GetSpacing());
+}
+
+//------------------------------------------------------------------------------
+void SegmentationVolume::SetSpacing(const double spacing[3])
+{
+  this->DescribeGrid(spacing);
 }
 
 //------------------------------------------------------------------------------
@@ -167,15 +201,13 @@ void SegmentationVolume::DescribeScalars()
 }
 
 //------------------------------------------------------------------------------
-void SegmentationVolume::DescribeGrid()
+void SegmentationVolume::DescribeGrid(const double spacing[3])
 {
   int extent[6];
   int points[3];
-  double spacing[3];
   double origin[3];
   this->Source->GetExtent(extent);
   this->Source->GetDimensions(points);
-  this->Source->GetSpacing(spacing);
   this->Source->GetOrigin(origin);
   const double* direction = this->Source->GetDirectionMatrix()->GetData();
   std::copy_n(direction, 9, this->Volume.direction);

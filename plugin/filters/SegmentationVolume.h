@@ -26,6 +26,12 @@ struct ChosenArray
   vtkDataArray* Labels() const;
 };
 
+/**
+ * The array to take where none is named: the active scalars, else the first by name that can hold
+ * labels, on points before cells.
+ */
+ChosenArray FindFirstArray(vtkImageData* image);
+
 /** Looks up the array in an image. */
 using ArrayFinder = std::function<ChosenArray(vtkImageData*)>;
 
@@ -42,6 +48,9 @@ public:
   /** @throws std::runtime_error with a message for the user where the array is no label array. */
   SegmentationVolume(vtkImageData* image, const ChosenArray& chosen);
 
+  /** Lets the voxels lie at another spacing than the image's. */
+  void SetSpacing(const double spacing[3]);
+
   const midsurface_volume& Description() const { return this->Volume; }
   vtkImageData* Image() const { return this->Source; }
   /** The array as it is in the image. */
@@ -51,7 +60,7 @@ public:
 
 private:
   void DescribeScalars();
-  void DescribeGrid();
+  void DescribeGrid(const double spacing[3]);
 
   vtkImageData* Source;
   vtkDataArray* Labels;

@@ -52,6 +52,7 @@ void vtkRidgeField::Extract(FilterRun& run, const SegmentationVolume& volume, vt
 
   vtkImageData* image = vtkImageData::SafeDownCast(output);
   image->ShallowCopy(volume.Image());
+  image->SetSpacing(volume.Description().spacing);
   vtkDataSetAttributes* fields = image->GetPointData();
   if (volume.OnCells())
   {

@@ -1,6 +1,7 @@
 #include "vtkSegmentationFilter.h"
 
 #include "FilterRun.h"
+#include "ImageSpacing.h"
 #include "LabelSelection.h"
 #include "SegmentationVolume.h"
 
@@ -13,24 +14,42 @@
 #include "vtkInformationVector.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+namespace
+{
+/** The extent of the image that `input` may be a piece or a block of. */
+const int* WholeExtent(vtkInformationVector** inputVector, vtkImageData* input)
+{
+  const int* own = input->GetExtent();
+  const int* whole =
+    inputVector[0]->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
+  bool isPiece = whole != nullptr;
+  for (int axis = 0; isPiece && axis < 3; ++axis)
+  {
+    isPiece = whole[2 * axis] <= own[2 * axis] && own[2 * axis + 1] <= whole[2 * axis + 1];
+  }
+  return isPiece ? whole : own;
+}
+} // namespace
+
 class vtkSegmentationFilter::vtkInternals
 {
 public:
   LabelSelection Labels;
 
-  static vtkMTimeType ChoiceTime(vtkSegmentationFilter* self)
-  {
-    return self->GetInputArrayInformation(0)->GetMTime();
-  }
-
   static ChosenArray Find(vtkSegmentationFilter* self, vtkImageData* image)
   {
     vtkInformation* wanted = self->GetInputArrayInformation(0);
     const char* name =
-      wanted->Has(vtkDataObject::FIELD_NAME()) ? wanted->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-    ChosenArray chosen{ nullptr, vtkDataObject::FIELD_ASSOCIATION_POINTS, name ? name : "" };
+      wanted->Has(vtkDataObject::FIELD_NAME()) ? wanted->Get(vtkDataObject::FIELD_NAME()) : "";
+    ChosenArray chosen{ nullptr, vtkDataObject::FIELD_ASSOCIATION_POINTS, name };
     chosen.Array = self->GetInputAbstractArrayToProcess(0, image, chosen.Association);
-    return chosen;
+    return chosen.Array || *name ? chosen : FindFirstArray(image);
+  }
+
+  void RequestChanged(vtkSegmentationFilter* self)
+  {
+    this->Labels.RequestChanged(
+      [self](vtkImageData* image) { return Find(self, image); }, self->GetInputDataObject(0, 0));
   }
 
   /**
@@ -43,7 +62,7 @@ public:
     if (!this->Running)
     {
       this->Labels.Update([self](vtkImageData* image) { return Find(self, image); },
-        ChoiceTime(self), self->GetInputDataObject(0, 0), self->Threads);
+        self->GetInputDataObject(0, 0), self->Threads);
     }
   }
 
@@ -72,6 +91,7 @@ void vtkSegmentationFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Threads: " << this->Threads << "\n";
+  os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Labels:\n";
   this->GetLabels()->PrintSelf(os, indent.GetNextIndent());
   os << indent << "FoundLabels:\n";
@@ -111,7 +131,7 @@ vtkDataArraySelection* vtkSegmentationFilter::GetFoundLabels()
 //------------------------------------------------------------------------------
 void vtkSegmentationFilter::LabelsChanged()
 {
-  this->Internals->Labels.RequestChanged(vtkInternals::ChoiceTime(this));
+  this->Internals->RequestChanged(this);
   this->Modified();
 }
 
@@ -134,8 +154,7 @@ vtkTypeBool vtkSegmentationFilter::ProcessRequest(
 {
   if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
   {
-    this->Internals->FindLabels(this);
-    return 1;
+    return this->RequestInformation(inputVector, outputVector);
   }
   if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()))
   {
@@ -152,6 +171,25 @@ vtkTypeBool vtkSegmentationFilter::ProcessRequest(
 int vtkSegmentationFilter::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSegmentationFilter::RequestInformation(
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  this->Internals->FindLabels(this);
+  vtkInformation* input = inputVector[0]->GetInformationObject(0);
+  if (input->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()) &&
+    input->Has(vtkDataObject::SPACING()))
+  {
+    ImageSpacing spacing(input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()),
+      input->Get(vtkDataObject::SPACING()));
+    if (this->Spacing == AUTOMATIC && spacing.IsStretched())
+    {
+      outputVector->GetInformationObject(0)->Set(vtkDataObject::SPACING(), spacing.GetMeant(), 3);
+    }
+  }
   return 1;
 }
 
@@ -176,13 +214,19 @@ int vtkSegmentationFilter::RequestData(
 {
   vtkImageData* input = vtkImageData::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
-  return FilterRun::Execute(this, this->Threads, output, [this, input, output](FilterRun& run) {
+  return FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
     if (!input || input->GetNumberOfPoints() == 0)
     {
       run.Warn("The input has no voxels: the output is empty.");
       return;
     }
-    const SegmentationVolume volume(input, vtkInternals::Find(this, input));
+    SegmentationVolume volume(input, vtkInternals::Find(this, input));
+    const ImageSpacing spacing(WholeExtent(inputVector, input), input->GetSpacing());
+    if (this->Spacing == AUTOMATIC && spacing.IsStretched())
+    {
+      volume.SetSpacing(spacing.GetMeant());
+      run.Warn(spacing.Explain(input->GetOrigin()[2]).c_str());
+    }
     this->Internals->Labels.Apply(run, volume);
     this->Extract(run, volume, output);
     output->GetFieldData()->PassData(input->GetFieldData());

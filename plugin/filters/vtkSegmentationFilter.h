@@ -3,8 +3,8 @@
  * @brief What the filters share that read labels from an image.
  *
  * The labels are the array that SetInputArrayToProcess(0, ...) names: one whole number a voxel, on
- * points or on cells, 0 for background, of any numeric type. Default: the active scalars. With
- * cells the surface lies on the grid of the cell centres.
+ * points or on cells, 0 for background, of any numeric type. Default: the active scalars, else the
+ * first such array by name. With cells the surface lies on the grid of the cell centres.
  *
  * Which labels are extracted is told by text, as in GetLabels()->EnableArray("3"). Without a
  * request, all are. A label that is asked for and not there is an error. Field data may name the
@@ -76,6 +76,22 @@ public:
   vtkGetMacro(Threads, int);
   ///@}
 
+  enum Spacings
+  {
+    AUTOMATIC = 0,
+    AS_GIVEN = 1
+  };
+
+  ///@{
+  /**
+   * Whether a spacing that looks wrong is corrected, with a warning. AUTOMATIC, the default: where
+   * z spacing is the number of slices times the x spacing, as readers make of an MRC file whose
+   * header lacks the number of slices, the z spacing is taken to be the x spacing. AS_GIVEN: never.
+   */
+  vtkSetClampMacro(Spacing, int, AUTOMATIC, AS_GIVEN);
+  vtkGetMacro(Spacing, int);
+  ///@}
+
   vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
@@ -84,6 +100,7 @@ protected:
   ~vtkSegmentationFilter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   int RequestUpdateExtent(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   int RequestData(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
 
@@ -93,6 +110,7 @@ protected:
   virtual void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) = 0;
 
   int Threads = 0;
+  int Spacing = AUTOMATIC;
 
 private:
   vtkSegmentationFilter(const vtkSegmentationFilter&) = delete;

@@ -122,6 +122,21 @@ static void a_raw_tomogram_is_refused(void)
   refused(&volume, "tomogram");
 }
 
+static void a_stretched_z_is_recognised(void)
+{
+  const size_t dimensions[3] = { 928, 960, 312 };
+  const double stretched[3] = { 12.44, 12.44, 3881.28 };
+  const double usual[3] = { 12.44, 12.44, 12.44 };
+  double meant[3] = { -1.0, -1.0, -1.0 };
+  CHECK(!midsurface_unstretched_spacing(dimensions, usual, meant));
+  CHECK(meant[0] == -1.0 && meant[1] == -1.0 && meant[2] == -1.0);
+  CHECK(midsurface_unstretched_spacing(dimensions, stretched, meant));
+  CHECK(meant[0] == 12.44 && meant[1] == 12.44 && meant[2] == 12.44);
+  CHECK(!midsurface_unstretched_spacing(NULL, stretched, meant));
+  CHECK(!midsurface_unstretched_spacing(dimensions, NULL, meant));
+  CHECK(!midsurface_unstretched_spacing(dimensions, stretched, NULL));
+}
+
 void test_data(void)
 {
   RUN(buffers_of_another_length_are_refused);
@@ -130,4 +145,5 @@ void test_data(void)
   RUN(labels_must_be_whole_numbers);
   RUN(labels_that_are_not_there_are_refused);
   RUN(a_raw_tomogram_is_refused);
+  RUN(a_stretched_z_is_recognised);
 }

@@ -2,8 +2,10 @@
 
 Volumes are numpy arrays in the order (z, y, x), x fastest, as they lie in a vtkImageData.
 """
+import os
 import sys
 import unittest
+from pathlib import Path
 
 import numpy as np
 from paraview import servermanager, simple
@@ -11,6 +13,10 @@ from paraview.vtk import vtkImageData
 from paraview.vtk.util import numpy_support
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.vtkCommonCore import VTK_STRING
+
+CHECKOUT = Path(__file__).resolve().parents[2]
+# Real segmentations, where there are any.
+DATA = Path(os.environ.get("MIDSURFACE_DATA", CHECKOUT.parent / "shared" / "data"))
 
 
 def run_tests():

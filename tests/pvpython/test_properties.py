@@ -2,7 +2,7 @@
 
 from paraview import servermanager, simple
 
-from pipeline import FilterTest, arrays, image, run_tests, sheets, source, update
+from pipeline import FilterTest, add_array, arrays, image, run_tests, sheets, source, update
 
 
 class Properties(FilterTest):
@@ -13,6 +13,7 @@ class Properties(FilterTest):
         self.assertEqual(proxy.Method, "Polyline zipper")
         self.assertEqual(proxy.Threads, 0)
         self.assertEqual(proxy.EdgeLength, 0)
+        self.assertEqual(proxy.Spacing, "Automatic")
         self.assertEqual(list(proxy.GetProperty("Method").GetAvailable()), ["Polyline zipper"])
 
     def test_stages_have_theirs(self):
@@ -24,6 +25,20 @@ class Properties(FilterTest):
             self.assertNotIn("Method", proxy.ListProperties())
         zipper = simple.PolylineZipper(Input=simple.MidPolylines(Input=source(image(sheets()))))
         self.assertEqual(zipper.Threads, 0)
+
+    def test_the_array_is_one_of_the_input_whatever_is_active(self):
+        """pvpython shows a new filter the active source before the Input that it is given."""
+        data = image(sheets(), "first")
+        add_array(data, sheets(), "second")
+        first = source(data)
+        mesh = simple.MidSurface(Input=first)
+        mesh.UpdatePipeline()
+        for create in (simple.MidSurface, simple.RidgeField, simple.MidPolylines):
+            simple.SetActiveSource(mesh)
+            self.assertEqual(list(create(Input=first).Segmentation), ["POINTS", "first"])
+            simple.SetActiveSource(mesh)
+            proxy = create(Input=first, Segmentation=["POINTS", "second"])
+            self.assertEqual(list(proxy.Segmentation), ["POINTS", "second"])
 
     def test_menu_and_help(self):
         manager = servermanager.ProxyManager().SMProxyManager
@@ -46,6 +61,7 @@ class Properties(FilterTest):
         for name, visibility in (
             ("Threads", "advanced"),
             ("EdgeLength", "advanced"),
+            ("Spacing", "advanced"),
             ("Method", "default"),
         ):
             self.assertEqual(

@@ -1,19 +1,13 @@
 """Real segmentations, where there are any: MIDSURFACE_DATA, or ../shared/data beside the sources."""
-import os
-from pathlib import Path
-
 import numpy as np
 from paraview import simple
 
-from pipeline import FilterTest, arrays, run_tests, update
-
-CHECKOUT = Path(__file__).resolve().parents[2]
-FOLDER = Path(os.environ.get("MIDSURFACE_DATA", CHECKOUT.parent / "shared" / "data"))
+from pipeline import DATA, FilterTest, arrays, run_tests, update
 
 
 class RealData(FilterTest):
     def mesh(self, name):
-        path = FOLDER / name
+        path = DATA / name
         if not path.exists():
             self.skipTest(f"{path} is not there")
         reader = simple.XMLImageDataReader(FileName=[str(path)])

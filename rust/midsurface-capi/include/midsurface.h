@@ -490,6 +490,21 @@ enum midsurface_status midsurface_ridge_field(const struct midsurface_volume *vo
                                               size_t length,
                                               struct midsurface_error **error);
 
+/**
+ * Tells whether an image's z spacing is its number of slices times its x spacing: what readers
+ * make of an MRC file whose header lacks the number of slices (mz = 1). The functions that take a
+ * volume work with its spacing as it is; this is for callers that want to correct it.
+ *
+ * dimensions: number of voxels of the whole image along x, y, z; 3 values.
+ * spacing: its spacing along x, y, z; 3 values.
+ * meant: room for 3 values. Filled with the spacing that is meant, z as x, where the answer is
+ * true; else left as it is.
+ *
+ * False, too, where a pointer is NULL, and for images of fewer than 16 voxels along an axis, of
+ * which slices may well be that thick.
+ */
+bool midsurface_unstretched_spacing(const size_t *dimensions, const double *spacing, double *meant);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus

@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use midsurface::{Error, Grid, Label, Volume};
 
-use crate::arguments::{slice, value};
-use crate::error::midsurface_error;
+use crate::arguments::{check_array, slice, value};
+use crate::error::{guarded_value, midsurface_error};
 
 /// The type of a volume's scalars: values for the field `scalar_type` of midsurface_volume.
 #[repr(C)]
@@ -138,6 +138,42 @@ unsafe fn borrow<'a, T: Label + 'a>(
     let scalars: &[T] = unsafe { slice(volume.scalars.cast(), volume.length, "volume.scalars") }?;
     let addresses = addresses(scalars.as_ptr(), scalars.len());
     Ok((Volume::new(scalars, grid)?, addresses))
+}
+
+/// Tells whether an image's z spacing is its number of slices times its x spacing: what readers
+/// make of an MRC file whose header lacks the number of slices (mz = 1). The functions that take a
+/// volume work with its spacing as it is; this is for callers that want to correct it.
+///
+/// dimensions: number of voxels of the whole image along x, y, z; 3 values.
+/// spacing: its spacing along x, y, z; 3 values.
+/// meant: room for 3 values. Filled with the spacing that is meant, z as x, where the answer is
+/// true; else left as it is.
+///
+/// False, too, where a pointer is NULL, and for images of fewer than 16 voxels along an axis, of
+/// which slices may well be that thick.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_unstretched_spacing(
+    dimensions: *const usize,
+    spacing: *const f64,
+    meant: *mut f64,
+) -> bool {
+    // SAFETY: the pointers are null or as the header describes.
+    guarded_value(false, || unsafe {
+        let (Ok(dimensions), Ok(spacing), Ok(())) = (
+            slice(dimensions, 3, "dimensions"),
+            slice(spacing, 3, "spacing"),
+            check_array(meant, 3, "meant"),
+        ) else {
+            return false;
+        };
+        let dimensions = [dimensions[0], dimensions[1], dimensions[2]];
+        let spacing = [spacing[0], spacing[1], spacing[2]];
+        let found = Grid::unstretched_spacing(dimensions, spacing);
+        if let Some(found) = found {
+            meant.cast::<[f64; 3]>().write(found);
+        }
+        found.is_some()
+    })
 }
 
 #[cfg(test)]

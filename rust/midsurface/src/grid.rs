@@ -54,6 +54,25 @@ impl Grid {
         Ok(())
     }
 
+    /// The spacing that is meant where z is stretched by a known defect of MRC files: without the
+    /// number of slices in its header (mz = 1), readers take the height of the whole volume for
+    /// the height of a voxel. `None` where the spacing does not look like that.
+    ///
+    /// `dimensions` are those of the whole image, of which the volume at hand may be a piece. A
+    /// few thick slices may well be as many times thicker as there are slices: only images well
+    /// above one voxel along each axis are judged.
+    pub fn unstretched_spacing(dimensions: [usize; 3], spacing: Vec3) -> Option<Vec3> {
+        const FEWEST_VOXELS: usize = 16;
+        // A cell's edges are written with about five digits.
+        let is_close = |a: f64, b: f64| (a - b).abs() <= 1e-4 * b.abs();
+        let [x, y, z] = spacing;
+        let is_stretched = dimensions.iter().all(|&n| n >= FEWEST_VOXELS)
+            && is_close(y, x)
+            && is_close(z, dimensions[2] as f64 * x)
+            && x > 0.0;
+        is_stretched.then_some([x, y, x])
+    }
+
     /// Number of voxels, or an error where it does not fit into an index.
     pub fn voxel_count(&self) -> Result<usize> {
         let [x, y, z] = self.dimensions;
@@ -126,5 +145,41 @@ pub fn unit(a: Vec3) -> Vec3 {
         a.map(|v| v / l)
     } else {
         a
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretched_z_is_told_from_thick_slices() {
+        let meant = Grid::unstretched_spacing;
+        // Spacing and size of a widely used example.
+        let found = meant([928, 960, 312], [12.44, 12.44, 3881.28]);
+        assert_eq!(found, Some([12.44, 12.44, 12.44]));
+        // Single precision, as the header has it, and edges rounded to a decimal.
+        let single = [12.44f32, 12.44, 3881.28].map(f64::from);
+        assert!(meant([928, 960, 312], single).is_some());
+        assert!(meant([928, 960, 312], [12.44, 12.44, 3881.3]).is_some());
+
+        for (dimensions, spacing) in [
+            ([928, 960, 312], [1.0, 1.0, 1.0]),
+            ([928, 960, 312], [12.44, 12.44, 12.44]),
+            ([928, 960, 311], [12.44, 12.44, 3881.28]),
+            ([928, 960, 312], [12.44, 6.22, 3881.28]),
+            ([928, 960, 1], [1.0, 1.0, 1.0]),
+            ([928, 960, 10], [4.0, 4.0, 40.0]),
+            ([8, 960, 312], [1.0, 1.0, 312.0]),
+            ([928, 960, 312], [0.0, 0.0, 0.0]),
+            ([928, 960, 312], [-1.0, -1.0, -312.0]),
+            ([928, 960, 312], [f64::NAN; 3]),
+        ] {
+            assert_eq!(
+                meant(dimensions, spacing),
+                None,
+                "{dimensions:?} {spacing:?}"
+            );
+        }
     }
 }
