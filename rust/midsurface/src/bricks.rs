@@ -108,6 +108,18 @@ impl Directory {
         (index != ABSENT).then(|| index as usize - 1)
     }
 
+    /// The bricks at a place and next to it, in 26 directions.
+    pub fn around(&self, place: [usize; 3]) -> impl Iterator<Item = usize> + '_ {
+        (0..27).filter_map(move |i| {
+            let side = [i % 3, i / 3 % 3, i / 9];
+            let mut at = place;
+            for (at, side) in at.iter_mut().zip(side) {
+                *at = (*at + side).checked_sub(1)?;
+            }
+            self.brick(at)
+        })
+    }
+
     /// Entry of a voxel in the batch's arrays, `None` where the part has no brick.
     pub fn entry(&self, voxel: [usize; 3]) -> Option<usize> {
         let brick = self.brick(voxel.map(|v| v / EDGE))?;

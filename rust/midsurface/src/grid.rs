@@ -95,6 +95,11 @@ impl Grid {
         self.spacing.map(|s| (s / unit * 1e9).round() / 1e9)
     }
 
+    /// World direction of a unit vector of the work frame.
+    pub(crate) fn direction_of(&self, v: Vec3) -> Vec3 {
+        self.direction.map(|row| dot(row, v))
+    }
+
     /// World coordinates of a point given as a continuous voxel index.
     pub fn world(&self, voxel: Vec3) -> Vec3 {
         let local: Vec3 =

@@ -82,6 +82,31 @@ impl Sampler<'_> {
         }
     }
 
+    /// The value at a point of the volume, linear between voxels, work units.
+    pub fn linear(&self, p: Vec3) -> f64 {
+        let voxel: Vec3 = std::array::from_fn(|a| p[a] / self.h[a]);
+        let low = voxel.map(f64::floor);
+        (0..8)
+            .map(|corner| {
+                let high = [0, 1, 2].map(|a| corner >> a & 1 == 1);
+                let weight: f64 = (0..3)
+                    .map(|a| {
+                        if high[a] {
+                            voxel[a] - low[a]
+                        } else {
+                            1.0 - voxel[a] + low[a]
+                        }
+                    })
+                    .product();
+                if weight == 0.0 {
+                    return 0.0;
+                }
+                let at = std::array::from_fn(|a| low[a] as isize + isize::from(high[a]));
+                weight * self.coefficient(at)
+            })
+            .sum()
+    }
+
     /// The value at (x, y) in slice z, work units.
     pub fn value(&self, at: [f64; 2], z: usize) -> f64 {
         let (window, t) = self.window(at, z);

@@ -26,23 +26,30 @@ mod block;
 mod bricks;
 mod centre;
 mod components;
+mod contour;
+mod crest;
 mod distance;
 mod eigen;
 mod error;
 mod execution;
+mod extension;
 mod flips;
 mod grid;
 mod halfedge;
 mod interpolation;
 mod manifold;
 mod mesh;
+mod midway;
 mod polylines;
+mod profile;
 mod quality;
-#[cfg_attr(not(test), expect(dead_code, reason = "not a stage of a method yet"))]
 mod remesh;
 mod resample;
 mod ridge;
+mod ridge_surface;
+mod rim;
 mod runs;
+mod scale;
 mod separable;
 mod sheet;
 mod slice;
@@ -51,6 +58,7 @@ mod strip;
 mod terraces;
 mod thickness;
 mod trace;
+mod trim;
 mod volume;
 mod zipper;
 
@@ -111,10 +119,14 @@ impl Options {
 pub fn extract(volume: &Volume, options: &Options, observer: &mut dyn Observer) -> Result<Mesh> {
     options.check()?;
     match options.method {
-        Method::PolylineZipper | Method::RidgeSurface => {
+        Method::PolylineZipper => {
             let mut execution = Execution::new(options.threads, observer)?;
             let polylines = trace_polylines(volume, options, &mut execution, 0.7)?;
             zip(&polylines, &mut execution, 0.7)
+        }
+        Method::RidgeSurface => {
+            let mut execution = Execution::new(options.threads, observer)?;
+            find_ridge_surface(volume, options, &mut execution)
         }
     }
 }
@@ -221,6 +233,35 @@ fn trace_polylines(
         ));
     }
     Ok(polylines)
+}
+
+fn find_ridge_surface(
+    volume: &Volume,
+    options: &Options,
+    execution: &mut Execution,
+) -> Result<Mesh> {
+    let mut mesh = Mesh::default();
+    execution.stage("Reading labels", 0.0, 0.15, 2)?;
+    let all_parts = read_parts(volume, options, execution)?;
+    let total: usize = all_parts.iter().map(Part::voxels).sum();
+    let mut done = 0;
+    for parts in batches(&all_parts) {
+        let share = |voxels: usize| 0.15 + 0.85 * voxels as f64 / total as f64;
+        let voxels: usize = parts.iter().map(Part::voxels).sum();
+        let span = [share(done), share(done + voxels)];
+        ridge_surface::ridge_surface(
+            parts,
+            &volume.grid,
+            options.edge_length,
+            span,
+            &mut mesh,
+            execution,
+        )?;
+        done += voxels;
+    }
+    warn_if_far(&mesh, execution);
+    execution.finish()?;
+    Ok(mesh)
 }
 
 fn zip(polylines: &Polylines, execution: &mut Execution, from: f64) -> Result<Mesh> {

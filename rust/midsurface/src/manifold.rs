@@ -5,6 +5,7 @@
 //! gives the points on it copies, each moved a little into its own sheet, so that no two points
 //! coincide.
 
+use crate::error::{zeros, Result};
 use crate::grid::{along, sub, Vec3};
 use crate::halfedge::{ends, next, Edges, MOST_AROUND, NONE};
 
@@ -16,6 +17,30 @@ pub(crate) struct Surface {
     pub points: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
     pub source: Vec<u32>,
+}
+
+impl Surface {
+    /// The surface without points that no triangle uses.
+    pub fn compact(mut self) -> Result<Self> {
+        let mut number: Vec<u32> = zeros(self.points.len())?;
+        let mut used = 0;
+        for p in self.triangles.iter_mut().flatten() {
+            let own = &mut number[*p as usize];
+            if *own == 0 {
+                used += 1;
+                *own = used;
+            }
+            *p = *own - 1;
+        }
+        let mut points = zeros(used as usize)?;
+        let mut source = zeros(used as usize)?;
+        for (p, own) in number.iter().enumerate().filter(|(_, own)| **own > 0) {
+            points[*own as usize - 1] = self.points[p];
+            source[*own as usize - 1] = self.source[p];
+        }
+        (self.points, self.source) = (points, source);
+        Ok(self)
+    }
 }
 
 /// Turns triangles of `surface` so that neighbours agree, cuts where they cannot, and splits

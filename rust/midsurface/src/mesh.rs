@@ -223,7 +223,7 @@ fn line_of_points(polylines: &Polylines) -> Vec<usize> {
 }
 
 /// Turns each connected piece as a whole so that its normals point away from its middle.
-fn turn_outward(points: &[Vec3], triangles: &mut [[u32; 3]]) {
+pub(crate) fn turn_outward(points: &[Vec3], triangles: &mut [[u32; 3]]) {
     let mut sets = DisjointSets::new(points.len());
     for t in triangles.iter() {
         sets.join(t[0] as usize, t[1] as usize);
@@ -256,7 +256,7 @@ fn turn_outward(points: &[Vec3], triangles: &mut [[u32; 3]]) {
 }
 
 /// Unit normals of the points (Thürmer and Wüthrich 1998: weighted by the angle at the point).
-fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+pub(crate) fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut normals = vec![[0.0; 3]; points.len()];
     for t in triangles {
         let [a, b, c] = t.map(|p| points[p as usize]);

@@ -79,7 +79,8 @@ pub(crate) fn ridge_field<'a>(
         .iter()
         .map(|kernels| kernels[0].variance(h[0]))
         .collect();
-    unshrink(&batch, &variance, &mut sheets, h, execution)?;
+    let variance = |brick: usize| variance[batch.part_of_brick[brick] as usize];
+    unshrink(&batch, variance, &mut sheets, h, execution)?;
     let field = RidgeField {
         distance,
         ridge,

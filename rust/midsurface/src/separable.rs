@@ -36,6 +36,35 @@ impl Kernel {
         }
     }
 
+    /// Like [`Self::axes`], but beyond the border the outermost voxels are repeated: what is right
+    /// for a field with steps, such as a mask, that is not to be continued as a line.
+    pub fn repeating(sigma: f64, reach: f64, h: Vec3, directory: &Directory) -> [Self; 3] {
+        let mut kernels = Self::axes(sigma, reach, h, directory);
+        for kernel in &mut kernels {
+            kernel.repeat();
+        }
+        kernels
+    }
+
+    fn repeat(&mut self) {
+        let near = self.radius.min(self.count);
+        for i in 0..2 * near {
+            let (low, high) = if i < near {
+                (i, self.count - 1 - i)
+            } else {
+                (self.count - 1 - (i - near), i - near)
+            };
+            // The first and the last entry of the row that lie within the volume.
+            let first = self.radius - low.min(self.radius);
+            let last = self.radius + high.min(self.radius);
+            let mut row = vec![0.0; 2 * self.radius + 1];
+            for (k, w) in self.weights[0].iter().enumerate() {
+                row[k.clamp(first, last)] += w;
+            }
+            self.weights[1 + i] = row;
+        }
+    }
+
     /// The kernels of the three axes of a part.
     pub fn axes(sigma: f64, reach: f64, h: Vec3, directory: &Directory) -> [Self; 3] {
         std::array::from_fn(|a| Self::new(sigma, reach, h[a], directory.dimensions[a]))
@@ -98,8 +127,20 @@ pub(crate) fn smooth(
     scratch: &mut Vec<f32>,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
+    let kernel_of = |brick: usize| Some(&kernels[batch.part_of_brick[brick] as usize]);
+    smooth_some(batch, kernel_of, field, scratch, execution)
+}
+
+/// Smooths `field` with a kernel for each brick; bricks without one become zero.
+pub(crate) fn smooth_some<'k>(
+    batch: &Batch,
+    kernel_of: impl Fn(usize) -> Option<&'k [Kernel; 3]> + Sync,
+    field: Vec<f32>,
+    scratch: &mut Vec<f32>,
+    execution: &mut Execution,
+) -> Result<Vec<f32>> {
     let add = |sum: f32, value: f32, weight: f32| sum + weight * value;
-    filter(batch, kernels, Kernel::at, add, field, scratch, execution)
+    filter(batch, kernel_of, Kernel::at, add, field, scratch, execution)
 }
 
 /// The largest value within the kernels' radius, along all axes; at least 0. `scratch`, as long as
@@ -115,7 +156,7 @@ pub(crate) fn local_maximum(
     let larger = |most: f32, value: f32, _| if value > most { value } else { most };
     filter(
         batch,
-        kernels,
+        |brick| Some(&kernels[batch.part_of_brick[brick] as usize]),
         |kernel, _| &kernel.weights[0],
         larger,
         field,
@@ -126,9 +167,9 @@ pub(crate) fn local_maximum(
 
 /// Replaces every value by `combine(so far, value in reach, weight)` over all values in reach,
 /// starting from 0, along one axis after the other. `weights` are those of a kernel at an index.
-fn filter(
+fn filter<'k>(
     batch: &Batch,
-    kernels: &[[Kernel; 3]],
+    kernel_of: impl Fn(usize) -> Option<&'k [Kernel; 3]> + Sync,
     weights: impl Fn(&Kernel, usize) -> &[f32] + Sync,
     combine: impl Fn(f32, f32, f32) -> f32 + Sync + Copy,
     mut field: Vec<f32>,
@@ -138,7 +179,13 @@ fn filter(
     let size = field.len() / batch.part_of_brick.len().max(1);
     for axis in [2, 1, 0] {
         execution.fill(scratch, size, |brick, out| {
-            let kernel = &kernels[batch.part_of_brick[brick] as usize][axis];
+            let Some(kernel) = kernel_of(brick).map(|kernels| &kernels[axis]) else {
+                // Writing zeros over zeros would make memory of pages that nobody has touched.
+                if out.iter().any(|v| *v != 0.0) {
+                    out.fill(0.0);
+                }
+                return;
+            };
             let (directory, place) = batch.brick(brick);
             let input = Neighbours::new(directory, place, axis, kernel.radius, &field, size);
             if input.bricks.iter().all(Option::is_none) {

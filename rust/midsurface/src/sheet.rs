@@ -36,11 +36,11 @@ pub(crate) fn normal(sheet: &Sheet) -> Option<Vec3> {
 pub(crate) const PASSES: usize = 7;
 
 /// An offset beyond this many σ (plus half a unit) is no longer that of a parabola.
-const TRUSTED: f64 = 1.3;
+pub(crate) const TRUSTED: f64 = 1.3;
 
 /// Entries of the tensor e eᵀ − e_z² I: xx, yy, xy, xz, yz. Eigenvectors do not change when a
 /// multiple of the identity is taken off, so that five are enough.
-const ENTRIES: usize = 5;
+pub(crate) const ENTRIES: usize = 5;
 
 /// The sheets of all voxels near the parts. `scale` is σ of each part, `h` the work spacing.
 pub(crate) fn sheets(
@@ -85,7 +85,7 @@ pub(crate) fn sheets(
 }
 
 /// A layer of entry k of a brick's tensors.
-fn entry(k: usize, z: usize) -> std::ops::Range<usize> {
+pub(crate) fn entry(k: usize, z: usize) -> std::ops::Range<usize> {
     let first = k * BRICK + z * LAYER;
     first..first + LAYER
 }
@@ -117,7 +117,7 @@ fn tensors(ridge: &Block<f32>, distance: &[f32], h: Vec3) -> [f32; ENTRIES * BRI
 
 /// The eigenvector of the most negative curvature, times the square root of its weight.
 #[inline(always)]
-fn source(hessian: Symmetric<f32>, distance: f32) -> [f32; 3] {
+pub(crate) fn source(hessian: Symmetric<f32>, distance: f32) -> [f32; 3] {
     let [first, second, _] = eigenvalues(hessian);
     let e = eigenvector(hessian, first);
     let second = if second < 0.0 { second } else { 0.0 };
@@ -193,13 +193,13 @@ fn sheet(tensor: Symmetric<f32>, value: f32, gradient: [f32; 3], hessian: Symmet
 }
 
 #[inline(always)]
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+pub(crate) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 impl Block<f32> {
     /// A smooth field around a brick.
-    fn smooth(batch: &Batch, brick: usize, field: &[f32]) -> Self {
+    pub(crate) fn smooth(batch: &Batch, brick: usize, field: &[f32]) -> Self {
         let mut block = Self::gather(batch, brick, field);
         let (directory, place) = batch.brick(brick);
         block.continue_beyond(directory, place);
@@ -211,7 +211,7 @@ impl Block<f32> {
 /// moves by ½ σ² div n against n, as the heat equation says for a function of the distance to it.
 pub(crate) fn unshrink(
     batch: &Batch,
-    variance: &[f64],
+    variance: impl Fn(usize) -> f64 + Sync,
     sheets: &mut [Sheet],
     h: Vec3,
     execution: &mut Execution,
@@ -221,7 +221,7 @@ pub(crate) fn unshrink(
         if own.iter().all(|sheet| *sheet == Sheet::default()) {
             return [0.0; BRICK];
         }
-        let half_variance = (0.5 * variance[batch.part_of_brick[brick] as usize]) as f32;
+        let half_variance = (0.5 * variance(brick)) as f32;
         divergence(&Block::gather(batch, brick, sheets).values, h)
             .map(|divergence| (half_variance * divergence).clamp(-MOST_SHRUNK, MOST_SHRUNK))
     })?;

@@ -1,0 +1,299 @@
+//! Profile → sheets, in any orientation: normal and offset to the middle for every voxel near one.
+//!
+//! As in `sheet.rs` the normal is the principal direction of the Hessians' first eigenvectors,
+//! smoothed as tensors, and the offset the Newton step for the logarithm; here both come from the
+//! profile (`profile.rs`), with a scale of each voxel's own. A voxel is a *core* voxel where it sees
+//! the sheet only: not where the profile falls within the sheet as steeply as across, since there
+//! another sheet joins, or the label ends in a curve. The sheets of the other voxels follow from
+//! those of their core neighbours (`extension.rs`).
+
+use crate::block::Block;
+use crate::bricks::{Batch, BRICK, EDGE, LAYER};
+use crate::eigen::{eigenvalues, eigenvector};
+use crate::error::{zeros, Result};
+use crate::execution::Execution;
+use crate::grid::{dot as dot3, Vec3};
+use crate::profile::{Derivatives, Profile};
+use crate::separable::{smooth_some, Kernel};
+use crate::sheet::{dot, entry, source, unshrink, Sheet, ENTRIES, TRUSTED};
+
+/// A core voxel's profile falls within the sheet by at most this much, in σ² times curvature.
+const TANGENTIAL: f32 = 0.6;
+/// and is curved within the sheet by at most this share of its curvature across.
+const BENT: f32 = 0.35;
+/// Standard deviation ρ of the tensors' smoothing, in σ, and its bounds in work units.
+const RHO: f32 = 1.0;
+const RHO_BOUNDS: [f32; 2] = [1.2, 3.4];
+/// Kernels of ρ are made at steps of this ratio.
+const RHO_STEP: f32 = 1.1892;
+/// A border of the volume cuts a sheet's profile within this many σ, along the normal.
+const REACH: f32 = 2.3;
+/// Offsets beyond this are of no use to a contour, in the coarsest spacing.
+const FARTHEST: f32 = 2.0;
+
+/// The sheets of the core voxels of a batch.
+pub(crate) fn core_sheets(
+    batch: &Batch,
+    profile: &Profile,
+    distance: &[f32],
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<Vec<Sheet>> {
+    let bricks = batch.part_of_brick.len();
+    let sigma = execution.collect(bricks, |brick| middle_sigma(profile, batch, brick))?;
+    let all_distances = distance;
+    let tensors = execution.collect(bricks, |brick| {
+        let distance = &distance[brick * BRICK..][..BRICK];
+        if distance.iter().all(|d| *d == 0.0) {
+            return [0.0; ENTRIES * BRICK];
+        }
+        let border = Border {
+            batch,
+            brick,
+            distance: all_distances,
+            h,
+        };
+        let cut = |i: usize, n: [f32; 3]| {
+            border.is_near(4.0 * REACH * sigma[brick])
+                && border.cuts(i, n.map(f64::from), REACH * sigma[brick])
+        };
+        tensors(&profile.derivatives(batch, brick, h), distance, cut)
+    })?;
+    let tensors = smooth_tensors(batch, &sigma, tensors.into_flattened(), h, execution)?;
+    let farthest = FARTHEST * h.iter().copied().fold(1.0, f64::max) as f32;
+    let sheets = execution.collect(bricks, |brick| {
+        let near = Block::gather(batch, brick, distance);
+        if near.values.iter().all(|d| *d == 0.0) {
+            return [Sheet::default(); BRICK];
+        }
+        let tensors = &tensors[brick * BRICK * ENTRIES..][..BRICK * ENTRIES];
+        let derivatives = profile.derivatives(batch, brick, h);
+        let mut sheets = sheets_of_brick(&derivatives, tensors, &near.largest_near(), farthest);
+        let border = Border {
+            batch,
+            brick,
+            distance,
+            h,
+        };
+        if border.is_near(4.0 * REACH * sigma[brick]) {
+            for (i, sheet) in sheets.iter_mut().enumerate() {
+                let [x, y, z, _] = *sheet;
+                if border.cuts(i, [x, y, z].map(f64::from), REACH * sigma[brick]) {
+                    *sheet = Sheet::default();
+                }
+            }
+        }
+        sheets
+    })?;
+    let mut sheets = sheets.into_flattened();
+    let variance = |brick: usize| f64::from(sigma[brick] * sigma[brick]);
+    unshrink(batch, variance, &mut sheets, h, execution)?;
+    Ok(sheets)
+}
+
+/// σ in the middle of a brick, or of its nearest voxel that has one.
+fn middle_sigma(profile: &Profile, batch: &Batch, brick: usize) -> f32 {
+    let sigma = profile.sigma(batch, brick);
+    let (sum, count) = sigma
+        .iter()
+        .filter(|s| **s > 0.0)
+        .fold((0.0, 0), |(sum, count), s| (sum + s, count + 1));
+    if count > 0 {
+        sum / count as f32
+    } else {
+        0.0
+    }
+}
+
+/// The borders of the volume as seen from a brick.
+struct Border<'a> {
+    batch: &'a Batch<'a>,
+    brick: usize,
+    distance: &'a [f32],
+    h: Vec3,
+}
+
+impl Border<'_> {
+    /// Whether a border is within `reach` work units of the brick.
+    fn is_near(&self, reach: f32) -> bool {
+        let (directory, place) = self.batch.brick(self.brick);
+        (0..3).any(|a| {
+            let first = (place[a] * EDGE) as f64 * self.h[a];
+            let last = (directory.dimensions[a] as f64 - 1.0) * self.h[a];
+            first.min(last - first - EDGE as f64 * self.h[a]) < f64::from(reach)
+        })
+    }
+
+    /// Whether the sheet through voxel i with normal n leaves the volume so near by that the profile
+    /// misses a part of it: along a sheet at right angles to the border nothing is missed.
+    fn cuts(&self, i: usize, n: Vec3, reach: f32) -> bool {
+        let (directory, place) = self.batch.brick(self.brick);
+        let within = [i % EDGE, i / EDGE % EDGE, i / LAYER];
+        let length = dot3(n, n).sqrt();
+        let n = n.map(|v| v / length.max(1e-12));
+        let p: Vec3 = std::array::from_fn(|a| (place[a] * EDGE + within[a]) as f64 * self.h[a]);
+        (0..3).any(|a| {
+            let last = (directory.dimensions[a] as f64 - 1.0) * self.h[a];
+            let (to_border, out) = if p[a] < last - p[a] {
+                (p[a], -1.0)
+            } else {
+                (last - p[a], 1.0)
+            };
+            if to_border >= f64::from(reach) * n[a].abs() {
+                return false;
+            }
+            // From here along the sheet to the border: is the label still there?
+            let slope = 1.0 - n[a] * n[a];
+            let steps = to_border / slope.max(1e-12);
+            if steps * slope.sqrt() > 2.0 * f64::from(reach) {
+                return false;
+            }
+            let voxel = std::array::from_fn(|b| {
+                let along = f64::from(u8::from(a == b)) - n[a] * n[b];
+                let at = (p[b] + out * steps * along) / self.h[b];
+                at.round().clamp(0.0, directory.dimensions[b] as f64 - 1.0) as usize
+            });
+            directory
+                .entry(voxel)
+                .is_some_and(|entry| self.distance[entry] > 0.0)
+        })
+    }
+}
+
+/// The tensors of a brick's voxels before smoothing, weighted; zero outside the label.
+fn tensors(
+    layers: &[Derivatives],
+    distance: &[f32],
+    cut: impl Fn(usize, [f32; 3]) -> bool,
+) -> [f32; ENTRIES * BRICK] {
+    let mut tensors = [0.0; ENTRIES * BRICK];
+    for (z, (layer, distance)) in layers.iter().zip(distance.chunks_exact(LAYER)).enumerate() {
+        if distance.iter().all(|d| *d == 0.0) {
+            continue;
+        }
+        let mut products = [[0.0; LAYER]; ENTRIES];
+        for i in 0..LAYER {
+            // Relative to σ, so that a thick sheet does not outshout a thin one beside it.
+            let hessian = layer.hessian.each_ref().map(|entry| entry[i]);
+            let e = source(hessian, distance[i] / layer.sigma[i]);
+            let e = if cut(z * LAYER + i, e) { [0.0; 3] } else { e };
+            let trust = trust(layer, i, e);
+            let e = e.map(|v| v * trust);
+            let zz = e[2] * e[2];
+            products[0][i] = e[0] * e[0] - zz;
+            products[1][i] = e[1] * e[1] - zz;
+            products[2][i] = e[0] * e[1];
+            products[3][i] = e[0] * e[2];
+            products[4][i] = e[1] * e[2];
+        }
+        for (k, product) in products.iter().enumerate() {
+            tensors[entry(k, z)].copy_from_slice(product);
+        }
+    }
+    tensors
+}
+
+/// How far a voxel's own normal counts, 0 to 1: less the steeper the profile falls within the sheet.
+#[inline(always)]
+fn trust(layer: &Derivatives, i: usize, e: [f32; 3]) -> f32 {
+    let length = dot(e, e).sqrt().max(f32::MIN_POSITIVE);
+    let n = e.map(|v| v / length);
+    let (offset, tangential, bent) = step(layer, i, n);
+    let share = tangential.max(offset.abs()) / (TANGENTIAL * layer.sigma[i]);
+    let clear = 1.0 - (bent / BENT).max(0.0);
+    if share < 1.0 && clear > 0.0 {
+        (1.0 - share * share) * clear
+    } else {
+        0.0
+    }
+}
+
+/// Smooths the tensors with a ρ for each brick that goes with its σ.
+fn smooth_tensors(
+    batch: &Batch,
+    sigma: &[f32],
+    tensors: Vec<f32>,
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<Vec<f32>> {
+    let Some(directory) = batch.directories.first() else {
+        return Ok(tensors);
+    };
+    let [least, most] = RHO_BOUNDS;
+    let steps = ((most / least).log2() / RHO_STEP.log2()).round() as i32;
+    let kernels: Vec<[Kernel; 3]> = (0..=steps)
+        .map(|step| {
+            let rho = f64::from(least * RHO_STEP.powi(step));
+            Kernel::axes(rho, 1.7 * rho, h, directory)
+        })
+        .collect();
+    let kernel_of = |brick: usize| {
+        let rho = (RHO * sigma[brick]).clamp(least, most);
+        let step = ((rho / least).log2() / RHO_STEP.log2()).round();
+        Some(&kernels[step as usize])
+    };
+    let mut scratch = zeros(tensors.len())?;
+    smooth_some(batch, kernel_of, tensors, &mut scratch, execution)
+}
+
+/// The sheets of a brick's core voxels, where the label is `near`.
+fn sheets_of_brick(
+    layers: &[Derivatives],
+    tensors: &[f32],
+    near: &[f32],
+    farthest: f32,
+) -> [Sheet; BRICK] {
+    let mut sheets = [Sheet::default(); BRICK];
+    for (z, (layer, near)) in layers.iter().zip(near.chunks_exact(LAYER)).enumerate() {
+        if near.iter().all(|d| *d == 0.0) {
+            continue;
+        }
+        let tensor: [&[f32]; ENTRIES] = std::array::from_fn(|k| &tensors[entry(k, z)]);
+        let mut found = [[0.0; LAYER]; 4];
+        for i in 0..LAYER {
+            let [xx, yy, xy, xz, yz] = tensor.map(|entry| entry[i]);
+            let tensor = [xx, yy, 0.0, xy, xz, yz];
+            let n = eigenvector(tensor, eigenvalues(tensor)[2]);
+            let (offset, tangential, bent) = step(layer, i, n);
+            let most = (TRUSTED as f32 * layer.sigma[i] + 0.5).min(farthest);
+            let core = (near[i] > 0.0)
+                & (offset.abs() <= most)
+                & (tangential <= TANGENTIAL * layer.sigma[i])
+                & (bent <= BENT);
+            for (found, v) in found.iter_mut().zip([n[0], n[1], n[2], offset]) {
+                found[i] = if core { v } else { 0.0 };
+            }
+        }
+        for (i, sheet) in sheets[z * LAYER..][..LAYER].iter_mut().enumerate() {
+            *sheet = found.each_ref().map(|found| found[i]);
+        }
+    }
+    sheets
+}
+
+/// Newton's step along n to where the logarithm of the profile is largest, how far a step of the
+/// same curvature would go within the sheet, and the curvature within the sheet over that along n;
+/// no numbers where the profile has no crest along n.
+#[inline(always)]
+fn step(layer: &Derivatives, i: usize, n: [f32; 3]) -> (f32, f32, f32) {
+    let g = layer.gradient.each_ref().map(|g| g[i]);
+    let [xx, yy, zz, xy, xz, yz] = layer.hessian.each_ref().map(|h| h[i]);
+    let bent = [
+        xx * n[0] + xy * n[1] + xz * n[2],
+        xy * n[0] + yy * n[1] + yz * n[2],
+        xz * n[0] + yz * n[1] + zz * n[2],
+    ];
+    let (slope, curvature) = (dot(g, n), dot(n, bent));
+    let within: [f32; 3] = std::array::from_fn(|k| g[k] - slope * n[k]);
+    if curvature < 0.0 {
+        // What is left of the trace is the curvature within the sheet, both directions together.
+        let bend = (xx + yy + zz - curvature) / curvature;
+        (
+            -slope / curvature,
+            dot(within, within).sqrt() / -curvature,
+            bend,
+        )
+    } else {
+        (f32::NAN, f32::NAN, f32::NAN)
+    }
+}

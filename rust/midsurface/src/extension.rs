@@ -1,0 +1,134 @@
+//! Core sheets → sheets to beyond the rims.
+//!
+//! Near a rim, a junction or a face the profile says little about the sheet, but the core voxels
+//! next to it do: a sheet runs straight on. Ring by ring, an unknown voxel takes the mean of what
+//! its known neighbours say, each by its own normal and offset.
+
+use crate::block::Block;
+use crate::bricks::{Batch, BRICK, EDGE};
+use crate::error::Result;
+use crate::execution::Execution;
+use crate::grid::Vec3;
+use crate::sheet::{dot, Sheet};
+
+/// Voxels along a block's edge.
+const SIDE: usize = crate::block::SIDE;
+/// Neighbours that say the same: normals within this cosine, offsets within this many work units.
+const ALIKE: f32 = 0.7;
+const NEAR: f32 = 0.75;
+
+/// Extends the sheets by so many `rings` of voxels, up to one voxel beyond the label and up to
+/// offsets of `farthest`.
+pub(crate) fn extend(
+    batch: &Batch,
+    distance: &[f32],
+    rings: usize,
+    farthest: f32,
+    h: Vec3,
+    sheets: &mut [Sheet],
+    execution: &mut Execution,
+) -> Result<()> {
+    let mut open: Vec<usize> = (0..batch.part_of_brick.len()).collect();
+    for _ in 0..rings {
+        let mut found: Vec<(usize, Vec<(u16, Sheet)>)> = Vec::new();
+        let before = &*sheets;
+        execution.stream(
+            &open,
+            |&brick| {
+                let near = Block::gather(batch, brick, distance);
+                if near.values.iter().all(|d| *d == 0.0) {
+                    return (brick, Vec::new());
+                }
+                let known = Block::gather(batch, brick, before);
+                (brick, ring(&known, &near.largest_near(), farthest, h))
+            },
+            |own| {
+                if !own.1.is_empty() {
+                    found.push(own);
+                }
+                Ok(())
+            },
+        )?;
+        // Only bricks next to a change can change in the next ring.
+        let mut next = vec![false; batch.part_of_brick.len()];
+        for (brick, own) in &found {
+            for (i, sheet) in own {
+                sheets[brick * BRICK + *i as usize] = *sheet;
+            }
+            let (directory, place) = batch.brick(*brick);
+            directory.around(place).for_each(|b| next[b] = true);
+        }
+        open = (0..next.len()).filter(|&b| next[b]).collect();
+        if open.is_empty() {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The voxels of a brick that learn their sheet in this ring.
+fn ring(known: &Block<Sheet>, near: &[f32; BRICK], farthest: f32, h: Vec3) -> Vec<(u16, Sheet)> {
+    let mut learnt = Vec::new();
+    if known.values.iter().all(|sheet| *sheet == Sheet::default()) {
+        return learnt;
+    }
+    for (i, near) in near.iter().enumerate() {
+        let at = crate::block::row(i / EDGE % EDGE, i / EDGE / EDGE) + i % EDGE;
+        if *near > 0.0 && known.values[at] == Sheet::default() {
+            if let Some(sheet) = continued(known, at, h) {
+                if sheet[3].abs() <= farthest {
+                    learnt.push((i as u16, sheet));
+                }
+            }
+        }
+    }
+    learnt
+}
+
+/// What the known neighbours of a voxel say of its sheet, led by the one whose sheet is nearest.
+fn continued(known: &Block<Sheet>, at: usize, h: Vec3) -> Option<Sheet> {
+    let mut said = [Sheet::default(); 26];
+    let mut count = 0;
+    let mut lead = 0;
+    for step in (0..27).filter(|&step| step != 13) {
+        let step = [step % 3, step / 3 % 3, step / 9];
+        let neighbour =
+            at + step[0] + step[1] * SIDE + step[2] * SIDE * SIDE - 1 - SIDE - SIDE * SIDE;
+        let sheet = known.values[neighbour];
+        if sheet == Sheet::default() {
+            continue;
+        }
+        // The voxel lies this far from the neighbour.
+        let apart: [f32; 3] = std::array::from_fn(|a| (1.0 - step[a] as f32) * h[a] as f32);
+        let n = [sheet[0], sheet[1], sheet[2]];
+        said[count] = [n[0], n[1], n[2], sheet[3] - dot(n, apart)];
+        if said[count][3].abs() < said[lead][3].abs() {
+            lead = count;
+        }
+        count += 1;
+    }
+    if count == 0 {
+        return None;
+    }
+    let first = said[lead];
+    let normal = |s: &Sheet| [s[0], s[1], s[2]];
+    let mut sum = [0.0; 4];
+    let mut agreed = 0.0;
+    for sheet in &said[..count] {
+        let cosine = dot(normal(sheet), normal(&first));
+        let turn = cosine.signum();
+        if cosine.abs() >= ALIKE && (turn * sheet[3] - first[3]).abs() <= NEAR {
+            for (sum, v) in sum.iter_mut().zip(sheet) {
+                *sum += turn * v;
+            }
+            agreed += 1.0;
+        }
+    }
+    let length = dot(normal(&sum), normal(&sum)).sqrt();
+    Some([
+        sum[0] / length,
+        sum[1] / length,
+        sum[2] / length,
+        sum[3] / agreed,
+    ])
+}

@@ -1,0 +1,137 @@
+//! Surface → surface midway: every point moves to the middle between both faces of the label.
+//!
+//! A profile has its crest midway only where the sheet is flat and as thick on both sides. The faces
+//! themselves have no such bias: from each point both are looked for along the normal
+//! (`thickness.rs`), and half the difference of their distances is how far the point is off. Faces
+//! are known to about a voxel, so the figure is averaged over the surface around, which, being a
+//! number along the normals, neither shrinks nor bends what is curved.
+
+use crate::bricks::Batch;
+use crate::error::{zeros, Result};
+use crate::execution::Execution;
+use crate::grid::{along, Vec3};
+use crate::interpolation::Sampler;
+use crate::manifold::Surface;
+use crate::thickness::View;
+
+/// Sheet fraction below which the faces seen may be a rim's.
+const INSIDE: f64 = 0.8;
+/// No point is off by more, work units.
+const MOST: f64 = 2.0;
+/// Rounds of averaging over neighbouring points; their number is the variance in about two squared
+/// edges of the contour.
+const ROUNDS: usize = 10;
+/// Points handed to a worker at a time.
+const PIECE: usize = 1024;
+
+/// How far off each point is, and how much of that was seen there.
+type Seen = [f32; 2];
+
+/// Moves the points of `surface` midway, with `normals` and the sheet `fraction` at its points.
+pub(crate) fn move_midway(
+    batch: &Batch,
+    distance: &[f32],
+    part: &[u32],
+    fraction: &[f64],
+    normals: &[Vec3],
+    surface: &mut Surface,
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<()> {
+    let mut seen: Vec<Seen> = zeros(surface.points.len())?;
+    let points = &surface.points;
+    let source = &surface.source;
+    execution.fill(&mut seen, PIECE, |piece, out| {
+        for (i, out) in out.iter_mut().enumerate() {
+            let p = PIECE * piece + i;
+            if fraction[p] < INSIDE {
+                continue;
+            }
+            let directory = &batch.directories[part[source[p] as usize] as usize];
+            let sampler = Sampler {
+                directory,
+                field: distance,
+                h,
+            };
+            let view = View::new(&sampler, points[p], normals[p]);
+            if let Some(off) = view.to_middle.filter(|off| off.abs() <= MOST) {
+                *out = [off as f32, 1.0];
+            }
+        }
+    })?;
+    let neighbours = Neighbours::new(&surface.triangles, surface.points.len());
+    let mut averaged: Vec<Seen> = zeros(seen.len())?;
+    for _ in 0..ROUNDS {
+        execution.fill(&mut averaged, PIECE, |piece, out| {
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = neighbours.mean(&seen, PIECE * piece + i);
+            }
+        })?;
+        std::mem::swap(&mut averaged, &mut seen);
+    }
+    let last: Vec3 = std::array::from_fn(|a| {
+        batch
+            .directories
+            .first()
+            .map_or(0.0, |d| (d.dimensions[a] as f64 - 1.0) * h[a])
+    });
+    for ((p, n), [off, weight]) in surface.points.iter_mut().zip(normals).zip(&seen) {
+        if *weight > 1e-3 {
+            *p = within_volume(*p, *n, f64::from(off / weight), last);
+        }
+    }
+    Ok(())
+}
+
+/// Moves a point along its normal; one on the border of the volume stays on the border.
+fn within_volume(p: Vec3, n: Vec3, off: f64, last: Vec3) -> Vec3 {
+    let on_border = |a: usize| p[a] <= 0.0 || p[a] >= last[a];
+    let way: Vec3 = std::array::from_fn(|a| if on_border(a) { 0.0 } else { n[a] });
+    let share = crate::grid::dot(way, way);
+    if share < 0.1 {
+        return p;
+    }
+    let moved = along(p, off / share, way);
+    std::array::from_fn(|a| moved[a].clamp(0.0, last[a]))
+}
+
+/// The points that share an edge with each point: those of point p are
+/// `list[start[p] .. start[p + 1]]`, those within the surface twice.
+struct Neighbours {
+    start: Vec<u32>,
+    list: Vec<u32>,
+}
+
+impl Neighbours {
+    fn new(triangles: &[[u32; 3]], points: usize) -> Self {
+        let mut start = vec![0u32; points + 1];
+        for p in triangles.iter().flatten() {
+            start[*p as usize + 1] += 2;
+        }
+        for p in 0..points {
+            start[p + 1] += start[p];
+        }
+        let mut at = start.clone();
+        let mut list = vec![0; 6 * triangles.len()];
+        for t in triangles {
+            for k in 0..3 {
+                let slot = &mut at[t[k] as usize];
+                list[*slot as usize] = t[(k + 1) % 3];
+                list[*slot as usize + 1] = t[(k + 2) % 3];
+                *slot += 2;
+            }
+        }
+        Self { start, list }
+    }
+
+    /// Mean over a point and its neighbours.
+    fn mean(&self, seen: &[Seen], p: usize) -> Seen {
+        let own = &self.list[self.start[p] as usize..self.start[p + 1] as usize];
+        let mut sum = seen[p].map(|v| 2.0 * v);
+        for &q in own {
+            sum[0] += seen[q as usize][0];
+            sum[1] += seen[q as usize][1];
+        }
+        sum.map(|v| v / (own.len() + 2) as f32)
+    }
+}

@@ -1,0 +1,209 @@
+//! Scale → profile: the label's mask, smoothed as wide as the label is thick here.
+//!
+//! Under a Gaussian with σ = 0.7 times the half thickness the mask of a slab has a profile much like
+//! a Gaussian across, with its maximum midway. Its logarithm is what is worked with: there a rim
+//! only adds a term that does not depend on the place across the sheet, and so neither turns the
+//! normal nor moves the middle.
+//!
+//! The mask is smoothed at a few levels of σ, each where it is wanted, and the logarithms'
+//! derivatives are blended between the two levels next to a voxel's own σ.
+
+use crate::block::{Block, Layer};
+use crate::bricks::{Batch, BRICK, EDGE, LAYER};
+use crate::error::Result;
+use crate::execution::Execution;
+use crate::grid::Vec3;
+use crate::scale::HalfThickness;
+use crate::separable::{smooth_some, Kernel};
+
+/// σ over the local half thickness.
+const SHARE: f32 = 0.7;
+/// σ of the first level, work units: below it the grid shows through.
+const FIRST: f32 = 0.8;
+/// Ratio of one level's σ to the last.
+const RATIO: f32 = std::f32::consts::SQRT_2;
+/// Number of levels; the last one's σ is that of a label 20 thick.
+const LEVELS: usize = 7;
+/// Where kernels are cut off, in σ.
+const REACH: f64 = 2.6;
+/// A smoothed mask below this has no logarithm to speak of.
+const LEAST: f32 = 1e-4;
+
+/// The smoothed mask at every level.
+pub(crate) struct Profile {
+    levels: Vec<Vec<f32>>,
+    half_thickness: HalfThickness,
+}
+
+/// Value of the smoothed mask, and first and second derivatives of its logarithm, in one layer of a
+/// brick; σ is the scale they are of. Where the value is 0 all are.
+pub(crate) struct Derivatives {
+    pub value: Layer,
+    pub gradient: [Layer; 3],
+    pub hessian: [Layer; 6],
+    pub sigma: Layer,
+}
+
+impl Profile {
+    /// Smooths the mask of a batch, which is where `distance` is positive.
+    pub fn new(
+        batch: &Batch,
+        distance: &[f32],
+        h: Vec3,
+        execution: &mut Execution,
+    ) -> Result<Self> {
+        let half_thickness = HalfThickness::new(batch, distance, execution)?;
+        let bricks = batch.part_of_brick.len();
+        let wanted = execution.collect(bricks, |brick| {
+            let near = Block::gather(batch, brick, distance);
+            if near.values.iter().all(|d| *d == 0.0) {
+                return 0u8;
+            }
+            levels_of(&half_thickness.brick(batch, brick).map(level))
+        })?;
+        let mut levels = Vec::new();
+        for level in 0..LEVELS {
+            levels.push(smooth_level(batch, &wanted, level, distance, h, execution)?);
+        }
+        Ok(Self {
+            levels,
+            half_thickness,
+        })
+    }
+
+    /// σ at every voxel of a brick; 0 where no label is near.
+    pub fn sigma(&self, batch: &Batch, brick: usize) -> [f32; BRICK] {
+        self.half_thickness.brick(batch, brick).map(|half| {
+            if half > 0.0 {
+                sigma(level(half))
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// The derivatives in the layers of a brick.
+    pub fn derivatives(&self, batch: &Batch, brick: usize, h: Vec3) -> Vec<Derivatives> {
+        let coordinate = self.half_thickness.brick(batch, brick).map(level);
+        let wanted = levels_of(&coordinate);
+        let mut layers: Vec<Derivatives> = (0..EDGE)
+            .map(|z| Derivatives {
+                value: [0.0; LAYER],
+                gradient: [[0.0; LAYER]; 3],
+                hessian: [[0.0; LAYER]; 6],
+                sigma: std::array::from_fn(|i| sigma(coordinate[z * LAYER + i])),
+            })
+            .collect();
+        for level in (0..LEVELS).filter(|level| wanted >> level & 1 == 1) {
+            let block = Block::smooth(batch, brick, &self.levels[level]);
+            for (z, layer) in layers.iter_mut().enumerate() {
+                let weight = |i: usize| {
+                    let apart = (coordinate[z * LAYER + i] - level as f32).abs();
+                    (1.0 - apart).max(0.0)
+                };
+                layer.blend(&block, z, std::array::from_fn(weight), h);
+            }
+        }
+        layers
+    }
+}
+
+impl Derivatives {
+    /// Adds what one level says, with a weight for each voxel.
+    fn blend(&mut self, block: &Block<f32>, z: usize, weight: Layer, h: Vec3) {
+        if weight.iter().all(|w| *w == 0.0) {
+            return;
+        }
+        let value = block.layer(z);
+        let (gradient, hessian) = block.derivatives(z, h);
+        for i in 0..LAYER {
+            let known = value[i] > LEAST;
+            let (w, inverse) = if known {
+                (weight[i], 1.0 / value[i])
+            } else {
+                (0.0, 0.0)
+            };
+            let g: [f32; 3] = std::array::from_fn(|k| gradient[k][i] * inverse);
+            self.value[i] += w * value[i];
+            for k in 0..3 {
+                self.gradient[k][i] += w * g[k];
+            }
+            let products = [
+                g[0] * g[0],
+                g[1] * g[1],
+                g[2] * g[2],
+                g[0] * g[1],
+                g[0] * g[2],
+                g[1] * g[2],
+            ];
+            for k in 0..6 {
+                self.hessian[k][i] += w * (hessian[k][i] * inverse - products[k]);
+            }
+        }
+    }
+}
+
+/// Level, from 0, of the σ that goes with a half thickness.
+fn level(half: f32) -> f32 {
+    let level = (SHARE * half / FIRST).max(1.0).log2() / RATIO.log2();
+    level.min((LEVELS - 1) as f32)
+}
+
+/// σ at a level.
+fn sigma(level: f32) -> f32 {
+    FIRST * RATIO.powf(level)
+}
+
+/// The levels that voxels blend, a bit each.
+fn levels_of(coordinates: &[f32; BRICK]) -> u8 {
+    coordinates.iter().fold(0, |bits, c| {
+        bits | 1 << c.floor() as u8 | 1 << c.ceil() as u8
+    })
+}
+
+/// The mask at one level, right in the bricks that want it and a voxel around.
+fn smooth_level(
+    batch: &Batch,
+    wanted: &[u8],
+    level: usize,
+    distance: &[f32],
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<Vec<f32>> {
+    let sigma = f64::from(sigma(level as f32));
+    if wanted.iter().all(|w| w >> level & 1 == 0) {
+        return Ok(Vec::new());
+    }
+    let Some(directory) = batch.directories.first() else {
+        return Ok(Vec::new());
+    };
+    let kernels = [Kernel::repeating(sigma, REACH * sigma, h, directory)];
+    let rings =
+        ((REACH * sigma / h.iter().copied().fold(f64::INFINITY, f64::min)).round() as usize + 1)
+            .div_ceil(EDGE);
+    let mut active: Vec<bool> = wanted.iter().map(|w| w >> level & 1 == 1).collect();
+    for _ in 0..rings {
+        active = execution.collect(active.len(), |brick| {
+            let (directory, place) = batch.brick(brick);
+            directory.around(place).any(|b| active[b])
+        })?;
+    }
+    let mask = mask(batch, distance, execution)?;
+    let mut scratch = batch.field()?;
+    let kernel_of = |brick: usize| active[brick].then_some(&kernels[0]);
+    smooth_some(batch, kernel_of, mask, &mut scratch, execution)
+}
+
+/// 1 where the label is, 0 elsewhere; pages without a label stay untouched.
+pub(crate) fn mask(batch: &Batch, distance: &[f32], execution: &mut Execution) -> Result<Vec<f32>> {
+    let mut mask = batch.field()?;
+    execution.fill(&mut mask, BRICK, |brick, mask| {
+        let distance = &distance[brick * BRICK..][..BRICK];
+        if distance.iter().any(|d| *d > 0.0) {
+            for (mask, d) in mask.iter_mut().zip(distance) {
+                *mask = f32::from(*d > 0.0);
+            }
+        }
+    })?;
+    Ok(mask)
+}

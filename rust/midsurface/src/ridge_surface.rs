@@ -1,0 +1,201 @@
+//! The method "ridge surface": the mid-surface in any orientation.
+//!
+//! Batch by batch: how thick the label is (`scale.rs`), its profile under a Gaussian as wide
+//! (`profile.rs`), the sheets at its crest (`crest.rs`) and on to beyond the rims (`extension.rs`),
+//! a surface through them (`contour.rs`), wound the same way (`manifold.rs`), cut at the rims
+//! (`rim.rs`, `trim.rs`), moved midway between both faces (`midway.rs`) and remeshed (`remesh`).
+
+use crate::bricks::Batch;
+use crate::components::Part;
+use crate::contour::contour;
+use crate::crest::core_sheets;
+use crate::distance::distance;
+use crate::error::{zeros, Result};
+use crate::execution::Execution;
+use crate::extension::extend;
+use crate::grid::{Grid, Vec3};
+use crate::interpolation::Sampler;
+use crate::manifold::{make_manifold, Surface};
+use crate::mesh::{normals, turn_outward, Mesh};
+use crate::midway::move_midway;
+use crate::profile::Profile;
+use crate::remesh::remesh;
+use crate::rim::sheet_fraction;
+use crate::thickness::View;
+use crate::trim::{drop_scraps, trim};
+
+/// Passes over a batch, for its progress.
+const PASSES: usize = 200;
+/// Times that points are moved midway, with normals of their own each time.
+const MIDWAY: usize = 2;
+/// The edge length by default, in units of the finest spacing (the paper's step).
+const EDGE_LENGTH: f64 = std::f64::consts::SQRT_2;
+/// How far offsets are followed, in the coarsest spacing.
+const FARTHEST: f64 = 2.0;
+/// Rings of voxels that sheets are extended by, at most.
+const RINGS: usize = 12;
+/// Points handed to a worker at a time.
+const PIECE: usize = 1024;
+
+/// Finds the surfaces of parts that make up whole components and appends them to `mesh`. Edges are
+/// `edge_length` world units long, 0: the default. `span` is the batch's share of the run's progress.
+pub(crate) fn ridge_surface(
+    parts: &[Part],
+    grid: &Grid,
+    edge_length: f64,
+    span: [f64; 2],
+    mesh: &mut Mesh,
+    execution: &mut Execution,
+) -> Result<()> {
+    let h = grid.work_spacing();
+    let at = |share: f64| span[0] + share * (span[1] - span[0]);
+    execution.stage("Finding sheets", at(0.0), at(0.5), 60)?;
+    let batch = &Batch::new(parts, grid.dimensions)?;
+    let distance = distance(batch, h, execution)?;
+    let (mut surface, part, fraction) = cut_surface(batch, &distance, h, execution)?;
+    execution.stage("Moving midway", at(0.5), at(0.7), 30)?;
+    let fraction = values(batch, &surface, &part, &fraction, h, execution)?;
+    for _ in 0..MIDWAY {
+        let normals = normals(&surface.points, &surface.triangles);
+        move_midway(
+            batch,
+            &distance,
+            &part,
+            &fraction,
+            &normals,
+            &mut surface,
+            h,
+            execution,
+        )?;
+    }
+    turn_outward(&surface.points, &mut surface.triangles);
+    execution.stage("Remeshing", at(0.7), at(1.0), PASSES)?;
+    let wanted = match edge_length {
+        0.0 => EDGE_LENGTH,
+        length => length / grid.unit(),
+    };
+    let remeshed = remesh(&surface.points, &surface.triangles, wanted, execution)?;
+    let part_of = |origin: u32| {
+        let corner = surface.triangles[origin as usize][0];
+        part[surface.source[corner as usize] as usize] as usize
+    };
+    let found = Found {
+        parts: remeshed
+            .origin
+            .iter()
+            .map(|o| part_of(o.triangle))
+            .collect(),
+        points: remeshed.points,
+        triangles: remeshed.triangles,
+    };
+    append(batch, &distance, grid, &found, mesh, execution)
+}
+
+/// The contour of the batch's sheets, cut at the rims; the part of each point's source, and the
+/// sheet fraction at the voxels.
+fn cut_surface(
+    batch: &Batch,
+    distance: &[f32],
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<(Surface, Vec<u32>, Vec<f32>)> {
+    let profile = Profile::new(batch, distance, h, execution)?;
+    let mut sheets = core_sheets(batch, &profile, distance, h, execution)?;
+    drop(profile);
+    let farthest = FARTHEST * h.iter().copied().fold(1.0, f64::max);
+    extend(
+        batch,
+        distance,
+        RINGS,
+        farthest as f32,
+        h,
+        &mut sheets,
+        execution,
+    )?;
+    let contour = contour(batch, &sheets, h, execution)?;
+    let fraction = sheet_fraction(batch, &sheets, distance, h, execution)?;
+    drop(sheets);
+    let mut surface = Surface {
+        source: (0..contour.points.len() as u32).collect(),
+        points: contour.points,
+        triangles: contour.triangles,
+    };
+    make_manifold(&mut surface);
+    let at_points = values(batch, &surface, &contour.part, &fraction, h, execution)?;
+    trim(&mut surface, &at_points)?;
+    drop_scraps(&mut surface, &contour.part);
+    Ok((surface.compact()?, contour.part, fraction))
+}
+
+/// A finished surface, work units, with the part of each point.
+struct Found {
+    points: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    parts: Vec<usize>,
+}
+
+/// The value of a field at every point of a surface.
+fn values(
+    batch: &Batch,
+    surface: &Surface,
+    part: &[u32],
+    field: &[f32],
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<Vec<f64>> {
+    let mut values = zeros(surface.points.len())?;
+    execution.fill(&mut values, PIECE, |piece, out| {
+        for (i, out) in out.iter_mut().enumerate() {
+            let p = PIECE * piece + i;
+            let directory = &batch.directories[part[surface.source[p] as usize] as usize];
+            let sampler = Sampler {
+                directory,
+                field,
+                h,
+            };
+            *out = sampler.linear(surface.points[p]);
+        }
+    })?;
+    Ok(values)
+}
+
+/// Appends a finished surface to the mesh, in world coordinates.
+fn append(
+    batch: &Batch,
+    distance: &[f32],
+    grid: &Grid,
+    found: &Found,
+    mesh: &mut Mesh,
+    execution: &mut Execution,
+) -> Result<()> {
+    let h = grid.work_spacing();
+    let normals = normals(&found.points, &found.triangles);
+    let mut thickness: Vec<f32> = zeros(found.points.len())?;
+    execution.fill(&mut thickness, PIECE, |piece, out| {
+        for (i, out) in out.iter_mut().enumerate() {
+            let p = PIECE * piece + i;
+            let directory = &batch.directories[found.parts[p]];
+            let sampler = Sampler {
+                directory,
+                field: distance,
+                h,
+            };
+            let view = View::new(&sampler, found.points[p], normals[p]);
+            *out = (view.thickness * grid.unit()) as f32;
+        }
+    })?;
+    let first = mesh.points.len() as u32;
+    for triangle in &found.triangles {
+        let part = &batch.parts[found.parts[triangle[0] as usize]];
+        mesh.triangles.push(triangle.map(|p| first + p));
+        mesh.labels.push(part.label);
+        mesh.components.push(part.component);
+    }
+    let to_world = |p: &Vec3| grid.world(std::array::from_fn(|a| p[a] / h[a]));
+    let points = found.points.iter().map(to_world);
+    mesh.points.extend(points.map(|p| p.map(|v| v as f32)));
+    let directions = normals.iter().map(|n| grid.direction_of(*n));
+    mesh.normals.extend(directions.map(|n| n.map(|v| v as f32)));
+    mesh.thickness.append(&mut thickness);
+    Ok(())
+}

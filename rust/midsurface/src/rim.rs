@@ -1,0 +1,69 @@
+//! Sheets → sheet fraction: where the sheet ends.
+//!
+//! Midway through a sheet the slightly smoothed mask is the same everywhere inside and half of that on
+//! a rim or a hole's edge, if these are straight. So the *sheet fraction* is the smoothed mask over
+//! what it is midway through the sheet around here: 1 inside and ½ on the rim. Its σ is that of the
+//! grid, not of the sheet, so that rims stay sharp.
+
+use crate::bricks::{Batch, BRICK};
+use crate::error::Result;
+use crate::execution::Execution;
+use crate::grid::Vec3;
+use crate::profile::mask;
+use crate::scale::BrickMeans;
+use crate::separable::{smooth_some, Kernel};
+use crate::sheet::Sheet;
+
+/// σ of the smoothing, work units.
+const SIGMA: f64 = 1.0;
+/// Where the kernel is cut off, in σ.
+const REACH: f64 = 2.6;
+/// How near to the middle of a sheet its inside is measured, work units.
+const CLOSE: f32 = 0.5;
+
+/// The sheet fraction at every voxel of a batch; 0 where no sheet is near.
+pub(crate) fn sheet_fraction(
+    batch: &Batch,
+    sheets: &[Sheet],
+    distance: &[f32],
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<Vec<f32>> {
+    let mut values = mask(batch, distance, execution)?;
+    let Some(directory) = batch.directories.first() else {
+        return Ok(values);
+    };
+    let kernels = Kernel::repeating(SIGMA, REACH * SIGMA, h, directory);
+    let mut scratch = batch.field()?;
+    values = smooth_some(batch, |_| Some(&kernels), values, &mut scratch, execution)?;
+    drop(scratch);
+    let inside = BrickMeans::new(
+        batch,
+        |brick| {
+            let own = brick * BRICK..(brick + 1) * BRICK;
+            let mut sums = [0.0; 2];
+            for ((value, sheet), d) in values[own.clone()]
+                .iter()
+                .zip(&sheets[own.clone()])
+                .zip(&distance[own])
+            {
+                if *d > 0.0 && *sheet != Sheet::default() && sheet[3].abs() < CLOSE {
+                    // High powers: the inside counts, rims do not.
+                    let fourth = (value * value) * (value * value);
+                    sums = [sums[0] + fourth * value, sums[1] + fourth];
+                }
+            }
+            sums
+        },
+        execution,
+    )?;
+    execution.fill(&mut values, BRICK, |brick, values| {
+        if values.iter().all(|v| *v == 0.0) {
+            return;
+        }
+        for (value, inside) in values.iter_mut().zip(inside.brick(batch, brick)) {
+            *value = if inside > 0.0 { *value / inside } else { 0.0 };
+        }
+    })?;
+    Ok(values)
+}
