@@ -5,7 +5,8 @@ cd "$(dirname "$0")"
 . scripts/build.sh
 . scripts/vtk9.sh
 
-install_packages "${build_packages[@]}" "${display_packages[@]}" clang-format
+install_packages "${build_packages[@]}" "${display_packages[@]}" clang-format pkgconf dpkg-dev file \
+  imagemagick
 install_rust
 # Where Rust came from Debian, its formatter does too; Debian has no clippy for it.
 is_installed rustc-web && ! cargo fmt --version >/dev/null 2>&1 && install_packages rustfmt-web
@@ -15,8 +16,8 @@ cargo fmt --all --check
 git ls-files '*.h' '*.hpp' '*.cxx' '*.c' | grep -v '/midsurface\.h$' |
   xargs --no-run-if-empty clang-format --dry-run --Werror
 
+scripts/packages.sh
 build_all
-build_vtk9
 
 say "Rust: lints and documentation"
 if cargo clippy --version >/dev/null 2>&1; then
@@ -33,6 +34,9 @@ say "C, C++ and pvpython: tests"
 with_display ctest --test-dir build --output-on-failure
 say "The library for VTK 9.1: tests"
 ctest --test-dir build/vtk9 --output-on-failure
+
+say "The packages, installed"
+tests/packages/run.sh
 
 say "Both commands from outside"
 tests/demo/run.sh

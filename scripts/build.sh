@@ -84,7 +84,9 @@ configure() {
   shift
   [ ! -f "$folder/build.ninja" ] || return 0
   mkdir -p "$folder"
-  cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" >"$folder/configure.log" 2>&1 || {
+  # Libraries where Debian has them.
+  cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_INSTALL_LIBDIR="lib/$(gcc -print-multiarch)" "$@" >"$folder/configure.log" 2>&1 || {
     cat "$folder/configure.log" >&2
     fail "CMake could not configure"
   }
