@@ -31,7 +31,11 @@ from paraview.simple import *
 
 if len(sys.argv) > 2:
     Connect("localhost", int(sys.argv[2]))
-mesh = servermanager.Fetch(MidSurface(Input=OpenDataFile(sys.argv[1])))
+segmentation = OpenDataFile(sys.argv[1])
+segmentation.UpdatePipeline()
+mid_surface = MidSurface(Input=segmentation)
+mid_surface.UpdatePipeline()
+mesh = servermanager.Fetch(mid_surface)
 assert mesh.GetNumberOfPolys() > 1000, mesh.GetNumberOfPolys()
 print("ok:", mesh.GetNumberOfPolys(), "triangles")
 PYTHON
@@ -47,7 +51,7 @@ done
 pvpython "$work/extract.py" "$PWD/tube.vti" 11731
 kill "$server" 2>/dev/null || true
 say "The same in the window"
-bash gui/run.sh tube.vti "$work/picture"
+bash gui/run.sh tube.vti $work/picture.png
 
 say "The plugin: removed without a trace, lines of others kept"
 purge midsurface-paraview
