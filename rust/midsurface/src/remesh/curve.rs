@@ -10,12 +10,13 @@ use super::reference::Reference;
 use crate::grid::{along, dot, length, sub, unit, Vec3};
 use crate::halfedge::{ends, NONE};
 
-/// Length over which the direction of the boundary is compared, to find corners.
-const CORNER_REACH: f64 = 1.5;
+/// Lengths over which the direction of the boundary is compared, to find corners: a corner is one
+/// over both, a step in a ragged rim over the shorter one only.
+const REACHES: [f64; 2] = [1.5, 3.0];
 /// Cosine of the least turn of a corner, 55°.
 const CORNER: f64 = 0.57;
-/// A loop shorter than so many reaches turns sharply all along and has no corners.
-const ROUND: f64 = 10.0;
+/// A shorter loop turns sharply all along and has no corners.
+const ROUND: f64 = 20.0;
 
 /// A closed boundary curve: a range of the arrays of [`Curve`].
 #[derive(Clone, Copy, Debug)]
@@ -88,10 +89,7 @@ impl Curve {
             .collect();
         let is_corner = |i: usize| {
             let sharpest = |j: usize| turns[i] <= turns[j % count];
-            curve.length > ROUND * CORNER_REACH
-                && turns[i] < CORNER
-                && sharpest(i + 1)
-                && sharpest(i + count - 1)
+            curve.length > ROUND && turns[i] < CORNER && sharpest(i + 1) && sharpest(i + count - 1)
         };
         let tangents: Vec<Vec3> = (0..count)
             .map(|i| match is_corner(i) {
@@ -102,15 +100,20 @@ impl Curve {
         self.tangents.extend(tangents);
     }
 
-    /// Cosine of the angle by which a loop turns around a place.
+    /// Cosine of the angle by which a loop turns around a place, over the reach where it is less.
     fn turn(&self, number: u32, parameter: f64) -> f64 {
+        let turns = REACHES.map(|reach| self.turn_over(number, parameter, reach));
+        turns.into_iter().fold(-1.0, f64::max)
+    }
+
+    fn turn_over(&self, number: u32, parameter: f64, reach: f64) -> f64 {
         let at = |s: f64| {
             let (i, j, t) = self.locate(number, s);
             along(self.points[i], t, sub(self.points[j], self.points[i]))
         };
         let here = at(parameter);
-        let back = sub(here, at(parameter - CORNER_REACH));
-        let ahead = sub(at(parameter + CORNER_REACH), here);
+        let back = sub(here, at(parameter - reach));
+        let ahead = sub(at(parameter + reach), here);
         dot(unit(back), unit(ahead))
     }
 
@@ -165,9 +168,30 @@ impl Curve {
         })
     }
 
-    /// Curvature of the curve around a place.
+    /// Curvature of the curve around a point; none next to a corner.
     pub fn curvature(&self, number: u32, parameter: f64) -> f64 {
-        self.turn(number, parameter).clamp(-1.0, 1.0).acos() / CORNER_REACH
+        if self.is_near_corner(number, parameter) {
+            return 0.0;
+        }
+        let reach = REACHES[0];
+        let cosine = self.turn_over(number, parameter, reach);
+        cosine.clamp(-1.0, 1.0).acos() / reach
+    }
+
+    fn is_near_corner(&self, number: u32, parameter: f64) -> bool {
+        let Loop { first, count, .. } = self.loops[number as usize];
+        let here = self.locate(number, parameter).0 - first;
+        let near = |i: &usize| {
+            let s = self.parameters[first + i % count];
+            let ahead = self.distance(number, parameter, s);
+            ahead.min(self.distance(number, s, parameter)) < REACHES[1]
+        };
+        let corner = |i: usize| self.tangents[first + i % count] == [0.0; 3];
+        let mut ahead = (here..here + count).take_while(near);
+        let mut back = (here..here + count)
+            .map(|i| 2 * here + count - i)
+            .take_while(near);
+        ahead.any(corner) || back.any(corner)
     }
 
     /// The half-edge of the reference below a boundary point, and the share of the way along it.

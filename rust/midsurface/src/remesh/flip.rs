@@ -2,7 +2,9 @@
 //! makes no difference, so that the smallest angle opens.
 
 use super::patch::{Kind, Patch};
+use super::polish::POOR;
 use super::shape::{facing, sine_of_smallest_angle};
+use crate::grid::squared_distance;
 use crate::halfedge::NONE;
 
 /// Sweeps over all edges.
@@ -10,27 +12,40 @@ const SWEEPS: usize = 4;
 /// A flip for the sake of valence may not leave an angle below this sine's (15°), unless one was
 /// there before.
 const SHARP: f64 = 0.26;
+/// Loss of valence that a flip may cost for the sake of a poor triangle: less than it costs to make
+/// a point one edge too many off.
+const MOST_LOST: i32 = 8;
 /// A flip for the sake of shape opens the smallest angle's sine by at least this.
 const GAIN: f64 = 0.01;
 
 /// Flips edges while that improves the patch.
 pub(super) fn flip_edges(patch: &mut Patch) {
     for _ in 0..SWEEPS {
-        let mut flipped = 0;
-        for e in 0..patch.twins.len() as u32 {
-            let f = patch.twin(e);
-            if f != NONE && f > e && patch.is_alive(e / 3) && is_better(patch, e) {
-                patch.flip(e);
-                flipped += 1;
-            }
-        }
-        if flipped == 0 {
+        if sweep(patch, false) == 0 {
             break;
         }
     }
 }
 
-/// How far a number of edges is from the best for a point.
+/// Flips edges of poor triangles once, where that opens their smallest angle.
+pub(super) fn flip_poor_edges(patch: &mut Patch) {
+    sweep(patch, true);
+}
+
+fn sweep(patch: &mut Patch, poor: bool) -> usize {
+    let mut flipped = 0;
+    for e in 0..patch.twins.len() as u32 {
+        let f = patch.twin(e);
+        if f != NONE && f > e && patch.is_alive(e / 3) && is_better(patch, e, poor) {
+            patch.flip(e);
+            flipped += 1;
+        }
+    }
+    flipped
+}
+
+/// How far a number of edges is from the best for a point; more than one off in the interior is
+/// to be had nowhere.
 pub(super) fn excess(kind: Kind, valence: i32) -> i32 {
     let best = match kind {
         Kind::Interior => 6,
@@ -38,7 +53,11 @@ pub(super) fn excess(kind: Kind, valence: i32) -> i32 {
         Kind::Corner => 3,
     };
     let off = valence - best;
-    off * off + if off.abs() > 1 { 4 } else { 0 }
+    let far = match kind {
+        Kind::Interior => 20,
+        _ => 2,
+    };
+    off * off + if off.abs() > 1 { far } else { 0 }
 }
 
 /// Change of the sum of [`excess`] for changes of some points' numbers of edges.
@@ -52,21 +71,28 @@ pub(super) fn change(patch: &Patch, changes: &[(u32, i32)]) -> i32 {
         .sum()
 }
 
-fn is_better(patch: &Patch, e: u32) -> bool {
+/// Whether a flip of half-edge e makes the patch better: for its valences, or `poor`, for the worst
+/// angle at almost any cost.
+fn is_better(patch: &Patch, e: u32, poor: bool) -> bool {
     let f = patch.twin(e);
     let [a, b, c] = [patch.origin(e), patch.end(e), patch.opposite(e)];
     let d = patch.opposite(f);
     let gain = -change(patch, &[(a, -1), (b, -1), (c, 1), (d, 1)]);
-    if gain < 0 {
+    let lost = if poor { MOST_LOST } else { 0 };
+    if gain < -lost {
         return false;
     }
     let [pa, pb, pc, pd] = [a, b, c, d].map(|p| patch.point(p));
+    // The longer diagonal hardly opens an angle.
+    if gain <= 0 && squared_distance(pc, pd) >= squared_distance(pa, pb) {
+        return false;
+    }
     let old = sine_of_smallest_angle([pa, pb, pc]).min(sine_of_smallest_angle([pb, pa, pd]));
     let new = sine_of_smallest_angle([pc, pa, pd]).min(sine_of_smallest_angle([pd, pb, pc]));
-    let better = if gain > 0 {
-        new >= SHARP.min(old)
-    } else {
-        new > old + GAIN
+    let better = match (poor, gain > 0) {
+        (true, _) => old < POOR && new > old + GAIN,
+        (false, true) => new >= SHARP.min(old),
+        (false, false) => new > old + GAIN,
     };
     better
         && may_flip(patch, e)

@@ -13,6 +13,8 @@
 //! | a block's half-edges, and the three changes of connectivity | `patch.rs` |
 //! | which edges are split, collapsed, flipped | `split.rs`, `collapse.rs`, `flip.rs` |
 //! | where points move | `relax.rs` |
+//! | every triangle becomes four, from twice the edge length to the one asked for | `subdivide.rs` |
+//! | what is still poor is mended | `polish.rs` |
 //!
 //! A triangle's work touches its block only, and blocks lie on a global grid: no step looks
 //! farther than a block's side.
@@ -22,6 +24,7 @@ mod collapse;
 mod curve;
 mod flip;
 mod patch;
+mod polish;
 mod reference;
 mod relax;
 mod shape;
@@ -65,8 +68,12 @@ const SHIFTS: [f64; 5] = [0.0, 0.5, 0.25, 0.75, 0.4];
 /// Passes at twice the final edge length, and at the final one.
 const COARSE_PASSES: usize = 4;
 const FINE_PASSES: usize = 3;
-/// Times that points are moved in a pass.
-const RELAXATIONS: usize = 3;
+/// Of these, the last ones mend what is poor.
+const POLISHING_PASSES: usize = 2;
+/// Times that points are moved in a coarse pass, where stretched triangles have to become even, and
+/// in a fine one.
+const COARSE_RELAXATIONS: usize = 8;
+const FINE_RELAXATIONS: usize = 3;
 /// Points handed to a worker at a time.
 const PIECE: usize = 4096;
 
@@ -84,25 +91,43 @@ pub(crate) fn remesh(
     let reference = Reference::new(points, triangles, edge_length, execution)?;
     let mut surface = start(&reference)?;
     let coarse = schedule(points, triangles, 2.0 * edge_length);
-    let fine = [edge_length; FINE_PASSES];
-    for (number, &longest) in coarse.iter().chain(&fine).enumerate() {
-        if number == coarse.len() {
-            surface = subdivide(&surface, &reference, execution)?;
-        }
-        let scale = if number < coarse.len() { 2.0 } else { 1.0 };
-        let shift = SHIFTS[number % SHIFTS.len()];
-        let shifts = [shift, (1.7 * shift).fract(), (2.3 * shift).fract()];
-        let blocks = Blocks::new(&surface, BLOCK * longest, shifts, execution)?;
-        surface = blocks.work(&surface, &reference, (scale, longest), execution, improve)?;
+    for (number, &longest) in coarse.iter().enumerate() {
+        let blocks = Blocks::new(&surface, BLOCK * longest, shift(number), execution)?;
+        surface = blocks.work(&surface, &reference, (2.0, longest), execution, |patch| {
+            improve(patch, COARSE_RELAXATIONS);
+        })?;
+    }
+    surface = subdivide(&surface, &reference, execution)?;
+    for number in 0..FINE_PASSES {
+        let polishing = number + POLISHING_PASSES >= FINE_PASSES;
+        let blocks = Blocks::new(&surface, BLOCK * edge_length, shift(number), execution)?;
+        surface = blocks.work(
+            &surface,
+            &reference,
+            (1.0, edge_length),
+            execution,
+            |patch| {
+                improve(patch, FINE_RELAXATIONS);
+                if polishing {
+                    polish::polish(patch);
+                }
+            },
+        )?;
     }
     finish(&reference, surface, execution)
 }
 
+/// Where the grid of blocks lies in a pass.
+fn shift(pass: usize) -> [f64; 3] {
+    let shift = SHIFTS[pass % SHIFTS.len()];
+    [shift, (1.7 * shift).fract(), (2.3 * shift).fract()]
+}
+
 /// One pass over a block.
-fn improve(patch: &mut Patch) {
+fn improve(patch: &mut Patch, relaxations: usize) {
     split::split_long_edges(patch);
     collapse::collapse_short_edges(patch);
-    for _ in 0..RELAXATIONS {
+    for _ in 0..relaxations {
         flip::flip_edges(patch);
         relax::relax(patch);
     }

@@ -1,11 +1,11 @@
-//! Points move along the surface to the middle of their triangles.
+//! Points move along the surface to the middle of their neighbours.
 
 use super::patch::{Kind, Patch, Vertex};
 use super::shape::{facing, sine_of_smallest_angle};
-use crate::grid::{along, cross, dot, length, sub, Vec3};
+use crate::grid::{along, dot, sub, Vec3};
 
-/// No move makes an angle smaller than this sine's (12°), unless one was there before.
-const SHARP: f64 = 0.2;
+/// No move makes an angle smaller than this sine's (30°), unless one was there before.
+const SHARP: f64 = 0.5;
 /// Shares of a move that are tried, until the triangles allow one.
 const SHARES: [f64; 2] = [1.0, 0.4];
 
@@ -34,7 +34,7 @@ fn moved(patch: &Patch, p: u32, share: f64, ring: &[u32]) -> Option<Vertex> {
     let vertex = &patch.vertices[p as usize];
     match vertex.kind {
         Kind::Interior => {
-            let way = sub(centre(patch, p, ring), vertex.point);
+            let way = sub(centre(patch, ring), vertex.point);
             let normal = vertex.normal();
             let way = along(way, -dot(way, normal), normal);
             let target = along(vertex.point, share, way);
@@ -45,21 +45,13 @@ fn moved(patch: &Patch, p: u32, share: f64, ring: &[u32]) -> Option<Vertex> {
     }
 }
 
-/// The mean of the centres of a point's triangles, weighted by their areas.
-fn centre(patch: &Patch, p: u32, ring: &[u32]) -> Vec3 {
-    let here = patch.point(p);
-    let (mut sum, mut total) = ([0.0; 3], 0.0);
-    for &e in ring {
-        let [u, v] = [patch.end(e), patch.opposite(e)].map(|q| sub(patch.point(q), here));
-        let weight = length(cross(u, v));
-        sum = along(along(sum, weight, u), weight, v);
-        total += 3.0 * weight;
-    }
-    if total > 0.0 {
-        along(here, 1.0 / total, sum)
-    } else {
-        here
-    }
+/// The mean of a point's neighbours. Weights by area or length would keep a lattice of stretched
+/// triangles as it is; equal ones pull it towards equal edges.
+fn centre(patch: &Patch, ring: &[u32]) -> Vec3 {
+    let sum = ring.iter().fold([0.0; 3], |sum, &e| {
+        along(sum, 1.0, patch.point(patch.end(e)))
+    });
+    sum.map(|v| v / ring.len() as f64)
 }
 
 /// A boundary point on its way to the middle between its neighbours along the curve.
@@ -71,8 +63,20 @@ fn slid(patch: &Patch, p: u32, share: f64) -> Option<Vertex> {
     let curve = &patch.reference.curve;
     let back = curve.distance(vertex.at, before, vertex.parameter);
     let ahead = curve.distance(vertex.at, vertex.parameter, after);
-    let parameter = vertex.parameter + share * 0.5 * (ahead - back);
-    Some(curve.vertex(patch.reference, vertex.at, parameter))
+    slid_by(patch, p, share * 0.5 * (ahead - back))
+}
+
+/// A boundary point that has slid some way along the curve, but not up to a neighbour.
+pub(super) fn slid_by(patch: &Patch, p: u32, way: f64) -> Option<Vertex> {
+    let [before, after] = patch
+        .along_boundary(p)?
+        .map(|q| patch.vertices[q as usize].parameter);
+    let vertex = &patch.vertices[p as usize];
+    let curve = &patch.reference.curve;
+    let back = curve.distance(vertex.at, before, vertex.parameter);
+    let ahead = curve.distance(vertex.at, vertex.parameter, after);
+    let way = way.clamp(-0.8 * back, 0.8 * ahead);
+    Some(curve.vertex(patch.reference, vertex.at, vertex.parameter + way))
 }
 
 /// Whether the triangles around a point remain good if it moves.

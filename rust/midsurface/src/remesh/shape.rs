@@ -9,15 +9,15 @@ const FACING: f64 = 0.5;
 /// Sine of a triangle's smallest angle; 0 where it has no area.
 pub(super) fn sine_of_smallest_angle([a, b, c]: [Vec3; 3]) -> f64 {
     // Twice the area is the product of the two longer sides and the sine between them.
-    let mut sides = [
+    let [u, v, w] = [
         squared_distance(b, c),
         squared_distance(c, a),
         squared_distance(a, b),
     ];
-    sides.sort_unstable_by(f64::total_cmp);
-    let product = (sides[1] * sides[2]).sqrt();
+    let product = (u * v).max(v * w).max(w * u);
     if product > 0.0 {
-        length(cross(sub(b, a), sub(c, a))) / product
+        let area = cross(sub(b, a), sub(c, a));
+        (dot(area, area) / product).sqrt()
     } else {
         0.0
     }

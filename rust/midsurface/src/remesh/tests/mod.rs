@@ -5,7 +5,7 @@ use shapes::{rectangle, ring, sphere, torus, tube, Shape};
 use super::{remesh, Remeshed};
 use crate::components::DisjointSets;
 use crate::execution::{Execution, Quiet};
-use crate::grid::{length, sub, Vec3};
+use crate::grid::{dot, length, sub, unit, Vec3};
 use crate::halfedge::{ends, Fans, NONE};
 use crate::mesh::Mesh;
 
@@ -39,7 +39,7 @@ fn topology(points: &[Vec3], triangles: &[[u32; 3]]) -> [i64; 3] {
     [components as i64, euler, roots.len() as i64]
 }
 
-/// The result as a mesh, for its checks.
+/// The result as a mesh, for its checks and figures.
 fn mesh(remeshed: &Remeshed) -> Mesh {
     let points = remeshed.points.len();
     Mesh {
@@ -56,13 +56,38 @@ fn mesh(remeshed: &Remeshed) -> Mesh {
     }
 }
 
-/// Asserts what must hold for any input.
-fn check(shape: &Shape, remeshed: &Remeshed) {
-    assert_eq!(mesh(remeshed).check_invariants(), Ok(()));
+/// Smallest and largest angle, degrees.
+fn angles(remeshed: &Remeshed) -> [f64; 2] {
+    let mut range = [180.0, 0.0f64];
+    for t in &remeshed.triangles {
+        for k in 0..3 {
+            let [p, q, r] = [0, 1, 2].map(|i| remeshed.points[t[(k + i) % 3] as usize]);
+            let angle = dot(unit(sub(q, p)), unit(sub(r, p))).acos().to_degrees();
+            range = [range[0].min(angle), range[1].max(angle)];
+        }
+    }
+    range
+}
+
+/// Asserts what must hold for any input, and returns the figures.
+fn check(shape: &Shape, remeshed: &Remeshed) -> crate::Quality {
+    let mesh = mesh(remeshed);
+    assert_eq!(mesh.check_invariants(), Ok(()));
     assert_eq!(
         topology(&shape.points, &shape.triangles),
         topology(&remeshed.points, &remeshed.triangles)
     );
+    mesh.quality()
+}
+
+/// Asserts the figures that a smooth surface must reach.
+fn check_quality(shape: &Shape, remeshed: &Remeshed) {
+    let quality = check(shape, remeshed);
+    let [least, most] = angles(remeshed);
+    assert!(quality.mean >= 0.93, "{quality:?}");
+    assert!(quality.mean_smallest_angle >= 53.5, "{quality:?}");
+    assert!(least >= 25.0 && most <= 120.0, "angles {least} to {most}");
+    assert_eq!(quality.valence_567, 1.0, "{quality:?}");
 }
 
 const STEP: f64 = std::f64::consts::SQRT_2;
@@ -72,7 +97,7 @@ fn points_lie_on_a_sphere() {
     for (radius, seed) in [(12.0, 1), (24.0, 2)] {
         let shape = sphere(radius, seed);
         let remeshed = run(&shape, STEP, 2);
-        check(&shape, &remeshed);
+        check_quality(&shape, &remeshed);
         for p in &remeshed.points {
             assert!((length(*p) - radius).abs() <= 0.02, "{p:?} of {radius}");
         }
@@ -80,7 +105,7 @@ fn points_lie_on_a_sphere() {
 }
 
 #[test]
-fn closed_and_open_surfaces_keep_their_topology() {
+fn closed_and_open_surfaces_are_good() {
     let shapes = [
         torus(24.0, 9.0, 3),
         tube(15.0, 30, 4),
@@ -88,7 +113,7 @@ fn closed_and_open_surfaces_keep_their_topology() {
         rectangle(30, 40, 0.0, 6),
     ];
     for shape in &shapes {
-        check(shape, &run(shape, STEP, 2));
+        check_quality(shape, &run(shape, STEP, 2));
     }
 }
 
