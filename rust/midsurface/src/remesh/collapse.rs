@@ -23,9 +23,16 @@ const SHARP: f64 = 0.2;
 /// Collapses edges that are too short, where that is possible.
 pub(super) fn collapse_short_edges(patch: &mut Patch) {
     let mut ring = Vec::new();
+    let shortest = (0..patch.twins.len() as u32)
+        .map(|e| squared_share(patch, e))
+        .fold(f64::INFINITY, f64::min);
     for share in SWEEPS {
+        let limit = (share * SHORT).powi(2);
+        if shortest >= limit {
+            continue;
+        }
         for e in 0..patch.twins.len() as u32 {
-            if is_short(patch, e, share * SHORT) {
+            if squared_share(patch, e) < limit {
                 let (a, b) = (patch.origin(e), patch.end(e));
                 // The end with fewer edges goes.
                 let order = if patch.valence[a as usize] <= patch.valence[b as usize] {
@@ -44,17 +51,18 @@ pub(super) fn collapse_short_edges(patch: &mut Patch) {
     }
 }
 
-fn is_short(patch: &Patch, e: u32, share: f64) -> bool {
+/// Square of an edge's length over the one wanted; infinite for an edge that may not be collapsed,
+/// and for the second half-edge of an edge.
+fn squared_share(patch: &Patch, e: u32) -> f64 {
     let f = patch.twin(e);
     if !patch.is_alive(e / 3) || (f != NONE && f < e) {
-        return false;
+        return f64::INFINITY;
     }
     let (a, b) = (patch.origin(e), patch.end(e));
     if patch.frozen[a as usize] || patch.frozen[b as usize] {
-        return false;
+        return f64::INFINITY;
     }
-    let shortest = share * patch.wanted(a, b);
-    squared_distance(patch.point(a), patch.point(b)) < shortest * shortest
+    squared_distance(patch.point(a), patch.point(b)) / patch.wanted(a, b).powi(2)
 }
 
 /// Whether v may be drawn into u along half-edge e, which joins them in either direction; fills

@@ -7,8 +7,6 @@ use super::shape::{facing, sine_of_smallest_angle};
 use crate::grid::squared_distance;
 use crate::halfedge::NONE;
 
-/// Sweeps over all edges.
-const SWEEPS: usize = 4;
 /// A flip for the sake of valence may not leave an angle below this sine's (15°), unless one was
 /// there before.
 const SHARP: f64 = 0.26;
@@ -18,13 +16,9 @@ const MOST_LOST: i32 = 8;
 /// A flip for the sake of shape opens the smallest angle's sine by at least this.
 const GAIN: f64 = 0.01;
 
-/// Flips edges while that improves the patch.
+/// Flips edges once where that improves the patch.
 pub(super) fn flip_edges(patch: &mut Patch) {
-    for _ in 0..SWEEPS {
-        if sweep(patch, false) == 0 {
-            break;
-        }
-    }
+    sweep(patch, false);
 }
 
 /// Flips edges of poor triangles once, where that opens their smallest angle.
@@ -32,16 +26,13 @@ pub(super) fn flip_poor_edges(patch: &mut Patch) {
     sweep(patch, true);
 }
 
-fn sweep(patch: &mut Patch, poor: bool) -> usize {
-    let mut flipped = 0;
+fn sweep(patch: &mut Patch, poor: bool) {
     for e in 0..patch.twins.len() as u32 {
         let f = patch.twin(e);
         if f != NONE && f > e && patch.is_alive(e / 3) && is_better(patch, e, poor) {
             patch.flip(e);
-            flipped += 1;
         }
     }
-    flipped
 }
 
 /// How far a number of edges is from the best for a point; more than one off in the interior is
@@ -61,14 +52,13 @@ pub(super) fn excess(kind: Kind, valence: i32) -> i32 {
 }
 
 /// Change of the sum of [`excess`] for changes of some points' numbers of edges.
-pub(super) fn change(patch: &Patch, changes: &[(u32, i32)]) -> i32 {
-    changes
-        .iter()
-        .map(|&(p, by)| {
-            let (kind, valence) = (patch.vertices[p as usize].kind, patch.valence[p as usize]);
-            excess(kind, valence + by) - excess(kind, valence)
-        })
-        .sum()
+pub(super) fn change<const N: usize>(patch: &Patch, changes: [(u32, i32); N]) -> i32 {
+    let mut sum = 0;
+    for (p, by) in changes {
+        let (kind, valence) = (patch.vertices[p as usize].kind, patch.valence[p as usize]);
+        sum += excess(kind, valence + by) - excess(kind, valence);
+    }
+    sum
 }
 
 /// Whether a flip of half-edge e makes the patch better: for its valences, or `poor`, for the worst
@@ -77,7 +67,7 @@ fn is_better(patch: &Patch, e: u32, poor: bool) -> bool {
     let f = patch.twin(e);
     let [a, b, c] = [patch.origin(e), patch.end(e), patch.opposite(e)];
     let d = patch.opposite(f);
-    let gain = -change(patch, &[(a, -1), (b, -1), (c, 1), (d, 1)]);
+    let gain = -change(patch, [(a, -1), (b, -1), (c, 1), (d, 1)]);
     let lost = if poor { MOST_LOST } else { 0 };
     if gain < -lost {
         return false;

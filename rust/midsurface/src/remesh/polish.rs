@@ -52,7 +52,7 @@ fn draw_away(patch: &mut Patch, p: u32, ring: &mut Vec<u32>) {
     let worth = |e: u32| {
         let (c, d) = (patch.opposite(e), patch.opposite(patch.twin(e)));
         let gained = patch.valence[p as usize] - 4;
-        change(patch, &[(c, -1), (d, -1), (patch.end(e), gained)])
+        change(patch, [(c, -1), (d, -1), (patch.end(e), gained)])
     };
     let mut order: Vec<(i32, u32)> = spokes.iter().map(|&e| (worth(e), e)).collect();
     order.sort_unstable();

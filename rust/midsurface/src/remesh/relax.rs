@@ -1,7 +1,7 @@
 //! Points move along the surface to the middle of their neighbours.
 
 use super::patch::{Kind, Patch, Vertex};
-use super::shape::{facing, sine_of_smallest_angle};
+use super::shape::{faces, squared_sine};
 use crate::grid::{along, dot, sub, Vec3};
 
 /// No move makes an angle smaller than this sine's (30°), unless one was there before.
@@ -79,13 +79,15 @@ pub(super) fn slid_by(patch: &Patch, p: u32, way: f64) -> Option<Vertex> {
     Some(curve.vertex(patch.reference, vertex.at, vertex.parameter + way))
 }
 
-/// Whether the triangles around a point remain good if it moves.
+/// Whether the triangles around a point remain good if it moves: none turns away from the surface
+/// or gets sharp.
 pub(super) fn allows(patch: &Patch, p: u32, moved: &Vertex, ring: &[u32]) -> bool {
+    let normal = moved.normal();
     ring.iter().all(|&e| {
-        let (a, b) = (patch.end(e), patch.opposite(e));
-        let [pa, pb] = [a, b].map(|q| patch.point(q));
-        let sharp = sine_of_smallest_angle([moved.point, pa, pb]);
-        facing(patch, [p, a, b], [moved.point, pa, pb])
-            && (sharp > SHARP || sharp > sine_of_smallest_angle([patch.point(p), pa, pb]))
+        let [a, b] = [patch.end(e), patch.opposite(e)].map(|q| patch.point(q));
+        let corners = [moved.point, a, b];
+        faces(corners, normal)
+            && (squared_sine(corners) > SHARP * SHARP
+                || squared_sine(corners) > squared_sine([patch.point(p), a, b]))
     })
 }

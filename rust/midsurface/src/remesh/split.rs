@@ -16,9 +16,16 @@ const OFF: f64 = 0.3;
 
 /// Splits edges until none is too long.
 pub(super) fn split_long_edges(patch: &mut Patch) {
+    let longest = (0..patch.twins.len() as u32)
+        .map(|e| squared_excess(patch, e))
+        .fold(0.0, f64::max);
     for share in SWEEPS {
+        let limit = (share * LONG).powi(2);
+        if longest <= limit {
+            continue;
+        }
         for e in 0..patch.twins.len() as u32 {
-            if is_long(patch, e, share * LONG) {
+            if squared_excess(patch, e) > limit {
                 if let Some(vertex) = near_middle(patch, e) {
                     patch.split(e, vertex);
                 }
@@ -27,17 +34,18 @@ pub(super) fn split_long_edges(patch: &mut Patch) {
     }
 }
 
-fn is_long(patch: &Patch, e: u32, share: f64) -> bool {
+/// Square of an edge's length over the one wanted; 0 for an edge that may not be split, and for
+/// the second half-edge of an edge.
+fn squared_excess(patch: &Patch, e: u32) -> f64 {
     let f = patch.twin(e);
     if !patch.is_alive(e / 3) || (f != NONE && f < e) {
-        return false;
+        return 0.0;
     }
     let (a, b) = (patch.origin(e), patch.end(e));
     if f == NONE && patch.frozen[a as usize] && patch.frozen[b as usize] {
-        return false;
+        return 0.0;
     }
-    let longest = share * patch.wanted(a, b);
-    squared_distance(patch.point(a), patch.point(b)) > longest * longest
+    squared_distance(patch.point(a), patch.point(b)) / patch.wanted(a, b).powi(2)
 }
 
 /// A vertex in the middle of an edge, unless the reference has none near.
