@@ -86,7 +86,7 @@ def colour_by_thickness(display, mesh, view):
 
 
 def draw_mitochondrion(mesh, folder):
-    view = make_view(1600, 1000)
+    view = make_view(1200, 750)
     display = simple.Show(mesh, view)
     display.Specular = 0.2
     colour_by_label(display)
