@@ -101,7 +101,8 @@ build_all() {
   [ -n "$plugin" ] || fail "the build made no MidSurface.so"
 }
 
-# Runs a command with a display that nobody sees.
+# Runs a command with a display that nobody sees. Without -noreset the display starts anew when its
+# last window closes, and refuses those that come meanwhile.
 with_display() {
-  xvfb-run --auto-servernum --server-args '-screen 0 1600x1200x24' "$@"
+  xvfb-run --auto-servernum --server-args '-screen 0 1600x1200x24 -noreset' "$@"
 }

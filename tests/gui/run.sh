@@ -8,7 +8,7 @@
 set -euo pipefail
 here=$(realpath "$(dirname "$0")")
 if [ "${1:-}" != --in-display ]; then
-  exec xvfb-run --auto-servernum --server-args '-screen 0 1280x800x24' bash "$0" --in-display "$@"
+  exec xvfb-run --auto-servernum --server-args '-screen 0 1280x800x24 -noreset' bash "$0" --in-display "$@"
 fi
 volume=$2 picture=$3 plugin=${4:-}
 
