@@ -15,7 +15,7 @@ use crate::execution::Execution;
 use crate::grid::{dot as dot3, Vec3};
 use crate::profile::{Derivatives, Profile};
 use crate::separable::{smooth_some, Kernel};
-use crate::sheet::{dot, entry, source, unshrink, Sheet, ENTRIES, TRUSTED};
+use crate::sheet::{dot, source, unshrink, Sheet, ENTRIES, TRUSTED};
 
 /// A core voxel's profile falls within the sheet by at most this much, in σ² times curvature.
 const TANGENTIAL: f32 = 0.6;
@@ -158,6 +158,12 @@ impl Border<'_> {
                 .is_some_and(|entry| self.distance[entry] > 0.0)
         })
     }
+}
+
+/// A layer of entry k of a brick's tensors.
+fn entry(k: usize, z: usize) -> std::ops::Range<usize> {
+    let first = k * BRICK + z * LAYER;
+    first..first + LAYER
 }
 
 /// The tensors of a brick's voxels before smoothing, weighted; zero outside the label.

@@ -24,7 +24,7 @@ pub(crate) const LARGEST_SCALE: f64 = 8.0;
 const SMALLEST_SCALE: f64 = 0.8;
 
 /// Passes over all bricks that [`ridge_field`] makes, for its progress.
-pub(crate) const PASSES: usize = 13 + sheet::PASSES;
+pub(crate) const PASSES: usize = 15 + sheet::PASSES;
 
 /// The fields of a batch, over its bricks.
 pub(crate) struct RidgeField {
@@ -61,7 +61,6 @@ pub(crate) fn ridge_field<'a>(
     let mut fraction = smooth(&batch, &kernels, mask, &mut scratch, execution)?;
     let copy = of_distance(&distance, |d| d, execution)?;
     let thick = local_maximum(&batch, &kernels, copy, &mut scratch, execution)?;
-    drop(scratch);
     execution.fill(&mut fraction, BRICK, |brick, fraction| {
         let sigma = scales[batch.part_of_brick[brick] as usize];
         // Neighbours mostly have the same maximum.
@@ -74,7 +73,16 @@ pub(crate) fn ridge_field<'a>(
         }
     })?;
     drop(thick);
-    let mut sheets = sheets(&batch, &scales, &distance, &ridge, h, execution)?;
+    let mut sheets = sheets(
+        &batch,
+        &scales,
+        &distance,
+        &ridge,
+        h,
+        &mut scratch,
+        execution,
+    )?;
+    drop(scratch);
     let variance: Vec<f64> = kernels
         .iter()
         .map(|kernels| kernels[0].variance(h[0]))

@@ -13,7 +13,7 @@
 use crate::block::{row, Block, Layer, SIDE};
 use crate::bricks::{Batch, BRICK, EDGE, LAYER};
 use crate::eigen::{eigenvalues, eigenvector, Symmetric};
-use crate::error::{zeros, Result};
+use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::separable::{smooth, Kernel};
@@ -33,7 +33,7 @@ pub(crate) fn normal(sheet: &Sheet) -> Option<Vec3> {
 }
 
 /// Passes over all bricks that [`sheets`] and [`unshrink`] make, for their progress.
-pub(crate) const PASSES: usize = 7;
+pub(crate) const PASSES: usize = 24;
 
 /// An offset beyond this many σ (plus half a unit) is no longer that of a parabola.
 pub(crate) const TRUSTED: f64 = 1.3;
@@ -42,6 +42,9 @@ pub(crate) const TRUSTED: f64 = 1.3;
 /// multiple of the identity is taken off, so that five are enough.
 pub(crate) const ENTRIES: usize = 5;
 
+/// Rows and columns of the entries.
+const PLACES: [[usize; 2]; ENTRIES] = [[0, 0], [1, 1], [0, 1], [0, 2], [1, 2]];
+
 /// The sheets of all voxels near the parts. `scale` is σ of each part, `h` the work spacing.
 pub(crate) fn sheets(
     batch: &Batch,
@@ -49,15 +52,16 @@ pub(crate) fn sheets(
     distance: &[f32],
     ridge: &[f32],
     h: Vec3,
+    scratch: &mut Vec<f32>,
     execution: &mut Execution,
 ) -> Result<Vec<Sheet>> {
     let bricks = batch.part_of_brick.len();
-    let tensors = execution.collect(bricks, |brick| {
+    let sources = execution.collect(bricks, |brick| {
         let distance = &distance[brick * BRICK..][..BRICK];
         if distance.iter().all(|d| *d == 0.0) {
-            return [0.0; ENTRIES * BRICK];
+            return [[0.0; BRICK]; 3];
         }
-        tensors(&Block::smooth(batch, brick, ridge), distance, h)
+        sources_of_brick(&Block::smooth(batch, brick, ridge), distance, h)
     })?;
     let kernels: Vec<[Kernel; 3]> = scale
         .iter()
@@ -67,52 +71,56 @@ pub(crate) fn sheets(
             Kernel::axes(rho, 1.7 * rho, h, directory)
         })
         .collect();
-    let mut scratch = zeros(bricks * BRICK * ENTRIES)?;
-    let tensors = tensors.into_flattened();
-    let tensors = smooth(batch, &kernels, tensors, &mut scratch, execution)?;
-    drop(scratch);
+    let mut tensor = Vec::with_capacity(ENTRIES);
+    for place in PLACES {
+        let field = execution.collect(bricks, |brick| product(&sources[brick], place))?;
+        let field = field.into_flattened();
+        tensor.push(smooth(batch, &kernels, field, scratch, execution)?);
+    }
+    drop(sources);
     let sheets = execution.collect(bricks, |brick| {
         let near = Block::gather(batch, brick, distance);
         if near.values.iter().all(|d| *d == 0.0) {
             return [Sheet::default(); BRICK];
         }
-        let tensors = &tensors[brick * BRICK * ENTRIES..][..BRICK * ENTRIES];
+        let tensor = std::array::from_fn(|k| &tensor[k][brick * BRICK..][..BRICK]);
         let sigma = scale[batch.part_of_brick[brick] as usize];
         let ridge = Block::smooth(batch, brick, ridge);
-        sheets_of_brick(&ridge, tensors, &near.largest_near(), sigma, h)
+        sheets_of_brick(&ridge, tensor, &near.largest_near(), sigma, h)
     })?;
     Ok(sheets.into_flattened())
 }
 
-/// A layer of entry k of a brick's tensors.
-pub(crate) fn entry(k: usize, z: usize) -> std::ops::Range<usize> {
-    let first = k * BRICK + z * LAYER;
-    first..first + LAYER
-}
-
-/// The tensors of a brick's voxels before smoothing, weighted; zero outside the label.
-fn tensors(ridge: &Block<f32>, distance: &[f32], h: Vec3) -> [f32; ENTRIES * BRICK] {
-    let mut tensors = [0.0; ENTRIES * BRICK];
+/// [`source`] of a brick's voxels; zero outside the label.
+fn sources_of_brick(ridge: &Block<f32>, distance: &[f32], h: Vec3) -> [[f32; BRICK]; 3] {
+    let mut sources = [[0.0; BRICK]; 3];
     for (z, distance) in distance.chunks_exact(LAYER).enumerate() {
         if distance.iter().all(|d| *d == 0.0) {
             continue;
         }
         let (_, hessian) = ridge.derivatives(z, h);
-        let mut products = [[0.0; LAYER]; ENTRIES];
+        let mut found: [Layer; 3] = [[0.0; LAYER]; 3];
         for i in 0..LAYER {
             let e = source(hessian.each_ref().map(|entry| entry[i]), distance[i]);
-            let zz = e[2] * e[2];
-            products[0][i] = e[0] * e[0] - zz;
-            products[1][i] = e[1] * e[1] - zz;
-            products[2][i] = e[0] * e[1];
-            products[3][i] = e[0] * e[2];
-            products[4][i] = e[1] * e[2];
+            for (found, v) in found.iter_mut().zip(e) {
+                found[i] = v;
+            }
         }
-        for (k, product) in products.iter().enumerate() {
-            tensors[entry(k, z)].copy_from_slice(product);
+        for (sources, found) in sources.iter_mut().zip(&found) {
+            sources[z * LAYER..][..LAYER].copy_from_slice(found);
         }
     }
-    tensors
+    sources
+}
+
+/// An entry of the tensors of a brick's voxels.
+fn product(e: &[[f32; BRICK]; 3], [row, column]: [usize; 2]) -> [f32; BRICK] {
+    let mut product = [0.0; BRICK];
+    let on_diagonal = if row == column { 1.0 } else { 0.0 };
+    for (i, product) in product.iter_mut().enumerate() {
+        *product = e[row][i] * e[column][i] - on_diagonal * e[2][i] * e[2][i];
+    }
+    product
 }
 
 /// The eigenvector of the most negative curvature, times the square root of its weight.
@@ -132,10 +140,10 @@ pub(crate) fn source(hessian: Symmetric<f32>, distance: f32) -> [f32; 3] {
     e.map(|v| v * weight)
 }
 
-/// The sheets of a brick's voxels from the smoothed tensors, where the label is `near`.
+/// The sheets of a brick's voxels from the entries of the smoothed tensor, where the label is `near`.
 fn sheets_of_brick(
     ridge: &Block<f32>,
-    tensors: &[f32],
+    tensor: [&[f32]; ENTRIES],
     near: &[f32],
     sigma: f64,
     h: Vec3,
@@ -148,7 +156,7 @@ fn sheets_of_brick(
         }
         let value = ridge.layer(z);
         let (gradient, hessian) = ridge.derivatives(z, h);
-        let tensor: [&[f32]; ENTRIES] = std::array::from_fn(|k| &tensors[entry(k, z)]);
+        let tensor = tensor.map(|entry| &entry[z * LAYER..][..LAYER]);
         let mut found: [Layer; 4] = [[0.0; LAYER]; 4];
         for i in 0..LAYER {
             let [xx, yy, xy, xz, yz] = tensor.map(|entry| entry[i]);
