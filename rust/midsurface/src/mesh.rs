@@ -8,11 +8,11 @@ use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::{Edges, NONE};
 use crate::manifold::{make_manifold, Surface};
 use crate::polylines::Polylines;
-use crate::terraces::{flatten_terraces, DEGREE};
+use crate::terraces::{self, flatten_terraces, Lines};
 use crate::zipper::Zipped;
 
 /// Passes over the mesh that [`Mesh::assemble`] makes, for its progress.
-pub(crate) const PASSES: usize = 3 + 2 * DEGREE;
+pub(crate) const PASSES: usize = 3 + terraces::PASSES;
 
 /// A triangle mesh: a 2-manifold with boundary, consistently wound in each connected piece.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -88,7 +88,14 @@ impl Mesh {
         turn_outward(&surface.points, &mut surface.triangles);
         execution.pass_done()?;
         let rough = normals(&surface.points, &surface.triangles);
-        flatten_terraces(&mut surface.points, &surface.triangles, &rough, execution)?;
+        let lines = filter_lines(polylines, &surface.source);
+        flatten_terraces(
+            &mut surface.points,
+            &surface.triangles,
+            &rough,
+            &lines,
+            execution,
+        )?;
         let line_of = line_of_points(polylines);
         let line = |t: &[u32; 3]| &polylines.lines[line_of[surface.source[t[0] as usize] as usize]];
         let mut mesh = Self {
@@ -220,6 +227,23 @@ fn line_of_points(polylines: &Polylines) -> Vec<usize> {
         line_of[line.first..line.first + line.count].fill(i);
     }
     line_of
+}
+
+/// What the low-pass asks about the lines, for points that are copies of `source`.
+fn filter_lines(polylines: &Polylines, source: &[u32]) -> Lines {
+    let mut ends = vec![false; polylines.points.len()];
+    let mut edge = vec![0.0; polylines.points.len()];
+    for (i, line) in polylines.lines.iter().enumerate().filter(|l| l.1.count > 1) {
+        let range = line.first..line.first + line.count;
+        edge[range.clone()].fill(polylines.mean_edge(i..i + 1));
+        ends[range.start] = !line.closed;
+        ends[range.end - 1] = !line.closed;
+    }
+    Lines {
+        across: polylines.across(),
+        edge: source.iter().map(|&p| edge[p as usize]).collect(),
+        ends: source.iter().map(|&p| ends[p as usize]).collect(),
+    }
 }
 
 /// Turns each connected piece as a whole so that its normals point away from its middle.

@@ -1,97 +1,177 @@
 //! Stage 9, flattening terraces: a low-pass over the mesh.
 //!
-//! The faces of a label are known to a voxel, so that a sheet nearly parallel to a grid plane comes
-//! as terraces, longer than any Gaussian of the sheet's own scale. A windowed-sinc filter (Taubin,
-//! Zhang and Golub 1996) removes them without shrinking what is curved: it is a polynomial of the
-//! mesh's Laplacian K, close to 1 below the passband and to 0 above. Points move along their normals
-//! only and by a bounded length; boundaries stay.
+//! The faces of a label are known to a voxel, so that a sheet nearly parallel to a lattice plane
+//! comes as terraces, longer than any Gaussian of the sheet's own scale. A windowed-sinc filter
+//! (Taubin, Zhang and Golub 1996) removes them without shrinking what is curved: it is a polynomial
+//! of the mesh's Laplacian K, close to 1 below the passband and to 0 above. The field it works on
+//! is a move of each point along its normal, so that nothing slides within the surface. K weighs
+//! neighbours by the inverse square of their distance, since where a sheet leans the slices'
+//! lines lie far apart; on a boundary it follows the boundary.
+//!
+//! Terraces are shallow. Where the low-pass would move a whole neighbourhood by more, it meets a
+//! true bend, as on the real membranes, and is not believed.
 
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, dot, length, sub, Vec3};
+use crate::grid::{along, dot, sub, unit, Vec3};
 use crate::halfedge::{ends, Edges, NONE};
 
-/// End of the passband among K's eigenvalues, 0 to 2: waves of about a dozen edges.
-const PASSBAND: f64 = 0.12;
+/// End of the passband among K's eigenvalues, 0 to 2: waves of about thirty edges.
+const PASSBAND: f64 = 0.02;
 /// Degree of the polynomial.
-pub(crate) const DEGREE: usize = 16;
-/// No point moves by more than this share of its longest edge: half a voxel at the usual step.
-const MOST: f64 = 0.3;
-/// Next to a boundary, which is fixed, the filter knows too little: over so many rings of points
-/// its bound grows from nothing.
+const DEGREE: usize = 36;
+/// No point moves by more than this share of an edge of the lines: the half voxel, over both faces.
+const MOST: f64 = 0.2;
+/// Root mean square move of a neighbourhood, as a share of an edge, that is half believed: what
+/// terraces come to is a tenth to a sixth of a voxel.
+const TERRACE: f64 = 0.12;
+/// Passes that make the neighbourhood: some four edges.
+const NEIGHBOURHOOD: usize = 16;
+/// Passes that smooth the normals along which heights are measured.
+const SMOOTH_NORMALS: usize = 4;
+/// Towards fixed points the bound on the moves shrinks to nothing over so many rings of points.
 const RINGS: u8 = 6;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
+/// Passes over the points that [`flatten_terraces`] makes, for its progress.
+pub(crate) const PASSES: usize = 2 * DEGREE + NEIGHBOURHOOD + SMOOTH_NORMALS + 1;
 
-/// Neighbours of every point: those of point p are `list[start[p] .. start[p + 1]]`; points on a
-/// boundary have none, which fixes them.
+/// What the filter knows of the lines that a mesh was zipped from.
+pub(crate) struct Lines {
+    /// Unit vector across all slices.
+    pub across: Vec3,
+    /// For every point the mean length of its line's edges.
+    pub edge: Vec<f64>,
+    /// For every point whether it is the end of an open line, which stays where it is: it may lie on
+    /// the border of the volume.
+    pub ends: Vec<bool>,
+}
+
+/// Neighbours of every point: those of point p, with their weights in K, are at
+/// `start[p] .. start[p + 1]`. A point on a boundary has neighbours along the boundary only.
 struct Neighbours {
     start: Vec<u32>,
     list: Vec<u32>,
+    weights: Vec<f32>,
+    boundary: Vec<bool>,
 }
 
-/// Smooths the points of a manifold along their `normals`.
+/// Smooths the points of a manifold along their `normals`. Points on a boundary stay in their slice.
 pub(crate) fn flatten_terraces(
     points: &mut [Vec3],
     triangles: &[[u32; 3]],
     normals: &[Vec3],
+    lines: &Lines,
     execution: &mut Execution,
 ) -> Result<()> {
     if triangles.is_empty() {
         return Ok(());
     }
-    let neighbours = Neighbours::new(triangles, points.len());
-    // A polynomial f alone would shrink what is curved by its slope at 0. Tukey's twicing, which
-    // filters what f took away and gives it back, has the response 2 f − f² and no slope there.
-    let smooth = low_pass(points, &neighbours, execution)?;
-    let taken: Vec<Vec3> = points
-        .iter()
-        .zip(&smooth)
-        .map(|(p, s)| sub(*p, *s))
-        .collect();
-    let given_back = low_pass(&taken, &neighbours, execution)?;
-    let rings = neighbours.rings();
-    let shift = |i: usize| {
-        let most = MOST * neighbours.reach(points, i) * f64::from(rings[i]) / f64::from(RINGS);
-        dot(sub(given_back[i], taken[i]), normals[i]).clamp(-most, most)
-    };
-    let shifts: Vec<f64> = (0..points.len()).map(shift).collect();
+    let neighbours = Neighbours::new(triangles, points, &lines.edge);
+    let moves = moves(points, normals, &neighbours, execution)?;
+    let trust = trust(&moves, &lines.edge, &neighbours, execution)?;
+    let rings = neighbours.rings(&lines.ends);
     for (i, point) in points.iter_mut().enumerate() {
-        *point = along(*point, shifts[i], normals[i]);
+        let most = MOST * lines.edge[i] * f64::from(rings[i]) / f64::from(RINGS);
+        let way = if neighbours.boundary[i] {
+            within_slice(normals[i], lines.across)
+        } else {
+            normals[i]
+        };
+        *point = along(*point, (trust[i] * moves[i]).clamp(-most, most), way);
     }
     Ok(())
 }
 
-/// The polynomial of the Laplacian, applied to a field by Chebyshev's recurrence: T₀ = x,
-/// T₁ = (1 − K/2) x, Tₙ₊₁ = 2 (1 − K/2) Tₙ − Tₙ₋₁.
-fn low_pass(
-    field: &[Vec3],
+/// The vector within the slice that moves a surface by 1 along its normal, or less where the
+/// surface lies flat.
+fn within_slice(normal: Vec3, across: Vec3) -> Vec3 {
+    let within = along(normal, -dot(normal, across), across);
+    within.map(|v| v / dot(within, within).max(0.25))
+}
+
+/// How far the low-pass would move each point along its normal.
+fn moves(
+    points: &[Vec3],
+    normals: &[Vec3],
     neighbours: &Neighbours,
     execution: &mut Execution,
-) -> Result<Vec<Vec3>> {
+) -> Result<Vec<f64>> {
+    let smoothed = neighbours.smooth_normals(normals, execution)?;
+    let mut heights: Vec<f64> = zeros(points.len())?;
+    execution.fill(&mut heights, PIECE, |piece, out| {
+        for (i, out) in out.iter_mut().enumerate() {
+            let p = piece * PIECE + i;
+            let height = |q: usize| dot(sub(points[q], points[p]), smoothed[p]);
+            *out = neighbours.of(p).map(|(q, w)| w * height(q)).sum();
+        }
+    })?;
+    // A polynomial f alone would shrink what is curved by its slope at 0. Tukey's twicing, which
+    // filters what f took away and gives it back, has the response 2 f − f² and no slope there.
+    let mut moves = low_pass(zeros(points.len())?, Some(&heights), neighbours, execution)?;
+    let given_back = low_pass(moves.clone(), None, neighbours, execution)?;
+    for (shift, back) in moves.iter_mut().zip(given_back) {
+        *shift -= back;
+    }
+    Ok(moves)
+}
+
+/// 1 where the moves are no larger than terraces ask for, 0 where they are much larger.
+fn trust(
+    moves: &[f64],
+    edge: &[f64],
+    neighbours: &Neighbours,
+    execution: &mut Execution,
+) -> Result<Vec<f64>> {
+    let mut squares: Vec<f64> = moves.iter().map(|m| m * m).collect();
+    let mut next: Vec<f64> = zeros(moves.len())?;
+    for _ in 0..NEIGHBOURHOOD {
+        execution.fill(&mut next, PIECE, |piece, out| {
+            for (i, out) in out.iter_mut().enumerate() {
+                let p = piece * PIECE + i;
+                *out = squares[p] + neighbours.rise(&squares, p);
+            }
+        })?;
+        std::mem::swap(&mut squares, &mut next);
+    }
+    let share = |(square, edge): (f64, &f64)| {
+        let half = (TERRACE * edge).powi(2).max(f64::MIN_POSITIVE);
+        1.0 / (1.0 + (square / half).powi(2))
+    };
+    Ok(squares.into_iter().zip(edge).map(share).collect())
+}
+
+/// The polynomial of the Laplacian, applied to a field by Chebyshev's recurrence: T₀ = x,
+/// T₁ = (1 − K/2) x, Tₙ₊₁ = 2 (1 − K/2) Tₙ − Tₙ₋₁. The field is relative to a surface over whose
+/// points their neighbours rise by `heights`.
+fn low_pass(
+    mut before: Vec<f64>,
+    heights: Option<&[f64]>,
+    neighbours: &Neighbours,
+    execution: &mut Execution,
+) -> Result<Vec<f64>> {
     let weights = sinc_weights();
-    let mut before: Vec<Vec3> = field.to_vec();
-    let mut now: Vec<Vec3> = zeros(field.len())?;
-    let step =
-        |field: &[Vec3], p: usize| along(field[p], 0.5, sub(neighbours.mean(field, p), field[p]));
+    let mut now: Vec<f64> = zeros(before.len())?;
+    let step = |field: &[f64], p: usize| {
+        let height = heights.map_or(0.0, |heights| heights[p]);
+        field[p] + 0.5 * (neighbours.rise(field, p) + height)
+    };
     execution.fill(&mut now, PIECE, |piece, out| {
         for (i, out) in out.iter_mut().enumerate() {
             *out = step(&before, piece * PIECE + i);
         }
     })?;
-    let start =
-        |(a, b): (&Vec3, &Vec3)| std::array::from_fn(|k| weights[0] * a[k] + weights[1] * b[k]);
-    let mut sum: Vec<Vec3> = before.iter().zip(&now).map(start).collect();
+    let start = |(a, b): (&f64, &f64)| weights[0] * a + weights[1] * b;
+    let mut sum: Vec<f64> = before.iter().zip(&now).map(start).collect();
     for &weight in &weights[2..] {
         execution.fill(&mut before, PIECE, |piece, out| {
             for (i, out) in out.iter_mut().enumerate() {
-                let twice = step(&now, piece * PIECE + i);
-                *out = std::array::from_fn(|k| 2.0 * twice[k] - out[k]);
+                *out = 2.0 * step(&now, piece * PIECE + i) - *out;
             }
         })?;
         std::mem::swap(&mut before, &mut now);
         for (sum, t) in sum.iter_mut().zip(&now) {
-            *sum = along(*sum, weight, *t);
+            *sum += weight * t;
         }
     }
     Ok(sum)
@@ -118,69 +198,95 @@ fn sinc_weights() -> Vec<f64> {
 }
 
 impl Neighbours {
-    fn new(triangles: &[[u32; 3]], points: usize) -> Self {
-        let twins = Edges::new(triangles, points).twins();
-        let half_edges = || (0..twins.len() as u32).map(|e| (e, ends(triangles, e)));
-        let mut fixed = vec![false; points];
-        for (e, (a, b)) in half_edges() {
-            if twins[e as usize] == NONE {
-                fixed[a as usize] = true;
-                fixed[b as usize] = true;
-            }
+    fn new(triangles: &[[u32; 3]], points: &[Vec3], edge: &[f64]) -> Self {
+        let twins = Edges::new(triangles, points.len()).twins();
+        let half_edges = || (0..twins.len()).map(|e| (ends(triangles, e as u32), twins[e] == NONE));
+        let mut boundary = vec![false; points.len()];
+        for ((a, b), outer) in half_edges() {
+            boundary[a as usize] |= outer;
+            boundary[b as usize] |= outer;
         }
-        let mut start = vec![0u32; points + 1];
-        for (_, (a, _)) in half_edges() {
-            start[a as usize + 1] += u32::from(!fixed[a as usize]);
+        let is_inner = |p: u32| !boundary[p as usize];
+        // Within the surface every edge has two half-edges, one each way; on a boundary one.
+        let links = || {
+            half_edges().flat_map(|((a, b), outer)| {
+                let there = (outer || is_inner(a)).then_some((a, b));
+                there.into_iter().chain(outer.then_some((b, a)))
+            })
+        };
+        let mut start = vec![0u32; points.len() + 1];
+        for (a, _) in links() {
+            start[a as usize + 1] += 1;
         }
-        for p in 0..points {
+        for p in 0..points.len() {
             start[p + 1] += start[p];
         }
         let mut at = start.clone();
-        let mut list = vec![0; start[points] as usize];
-        for (_, (a, b)) in half_edges() {
-            if !fixed[a as usize] {
-                list[at[a as usize] as usize] = b;
-                at[a as usize] += 1;
-            }
+        let mut list = vec![0; start[points.len()] as usize];
+        let mut weights = vec![0.0; list.len()];
+        for (a, b) in links() {
+            let place = &mut at[a as usize];
+            let count = start[a as usize + 1] - start[a as usize];
+            let d = sub(points[b as usize], points[a as usize]);
+            // Along a line a bend shows twice as much as on average over all directions.
+            let share = if is_inner(a) { 1.0 } else { 0.5 } / f64::from(count);
+            list[*place as usize] = b;
+            weights[*place as usize] =
+                (share * (edge[a as usize].powi(2) / dot(d, d)).min(1.0)) as f32;
+            *place += 1;
         }
-        Self { start, list }
+        Self {
+            start,
+            list,
+            weights,
+            boundary,
+        }
     }
 
-    /// Rings of points between each point and a boundary, at most [`RINGS`].
-    fn rings(&self) -> Vec<u8> {
-        let count = self.start.len() - 1;
-        let own = |p: usize| &self.list[self.start[p] as usize..self.start[p + 1] as usize];
-        let mut rings: Vec<u8> = (0..count)
-            .map(|p| if own(p).is_empty() { 0 } else { RINGS })
+    /// The neighbours of point p with their weights.
+    fn of(&self, p: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let own = self.start[p] as usize..self.start[p + 1] as usize;
+        let list = self.list[own.clone()].iter().zip(&self.weights[own]);
+        list.map(|(&q, &w)| (q as usize, f64::from(w)))
+    }
+
+    /// How much higher than at a point a field is at its neighbours: −K of it.
+    fn rise(&self, field: &[f64], p: usize) -> f64 {
+        self.of(p).map(|(q, w)| w * (field[q] - field[p])).sum()
+    }
+
+    /// Normals averaged over some rings, in which terraces do not show.
+    fn smooth_normals(&self, normals: &[Vec3], execution: &mut Execution) -> Result<Vec<Vec3>> {
+        let mut smooth = normals.to_vec();
+        let mut next: Vec<Vec3> = zeros(normals.len())?;
+        for _ in 0..SMOOTH_NORMALS {
+            execution.fill(&mut next, PIECE, |piece, out| {
+                for (i, out) in out.iter_mut().enumerate() {
+                    let p = piece * PIECE + i;
+                    let sum = self
+                        .of(p)
+                        .fold(smooth[p], |n, (q, _)| along(n, 1.0, smooth[q]));
+                    *out = unit(sum);
+                }
+            })?;
+            std::mem::swap(&mut smooth, &mut next);
+        }
+        Ok(smooth)
+    }
+
+    /// Rings of points between each point and a fixed one on a boundary, at most [`RINGS`].
+    fn rings(&self, fixed: &[bool]) -> Vec<u8> {
+        let is_fixed = |p: usize| fixed[p] && self.boundary[p];
+        let mut rings: Vec<u8> = (0..fixed.len())
+            .map(|p| if is_fixed(p) { 0 } else { RINGS })
             .collect();
         for ring in 1..RINGS {
-            for p in 0..count {
-                if rings[p] > ring && own(p).iter().any(|&q| rings[q as usize] == ring - 1) {
+            for p in 0..rings.len() {
+                if rings[p] > ring && self.of(p).any(|(q, _)| rings[q] == ring - 1) {
                     rings[p] = ring;
                 }
             }
         }
         rings
-    }
-
-    /// Length of a point's longest edge.
-    fn reach(&self, points: &[Vec3], p: usize) -> f64 {
-        let own = &self.list[self.start[p] as usize..self.start[p + 1] as usize];
-        let edges = own
-            .iter()
-            .map(|&q| length(sub(points[q as usize], points[p])));
-        edges.fold(0.0, f64::max)
-    }
-
-    /// Mean of a field over a point's neighbours; the point's own value where it is fixed.
-    fn mean(&self, field: &[Vec3], p: usize) -> Vec3 {
-        let own = &self.list[self.start[p] as usize..self.start[p + 1] as usize];
-        if own.is_empty() {
-            return field[p];
-        }
-        let sum = own
-            .iter()
-            .fold([0.0; 3], |sum, &q| along(sum, 1.0, field[q as usize]));
-        sum.map(|v| v / own.len() as f64)
     }
 }
