@@ -8,7 +8,7 @@ use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::{Edges, NONE};
 use crate::manifold::{make_manifold, Surface};
 use crate::polylines::Polylines;
-use crate::terraces::{self, flatten_terraces, Lines};
+use crate::terraces::{self, flatten_terraces, LineOfPoint};
 use crate::zipper::Zipped;
 
 /// Passes over the mesh that [`Mesh::assemble`] makes, for its progress.
@@ -88,7 +88,7 @@ impl Mesh {
         turn_outward(&surface.points, &mut surface.triangles);
         execution.pass_done()?;
         let rough = normals(&surface.points, &surface.triangles);
-        let lines = filter_lines(polylines, &surface.source);
+        let lines = lines_of_points(polylines, &surface.source);
         flatten_terraces(
             &mut surface.points,
             &surface.triangles,
@@ -229,21 +229,31 @@ fn line_of_points(polylines: &Polylines) -> Vec<usize> {
     line_of
 }
 
-/// What the low-pass asks about the lines, for points that are copies of `source`.
-fn filter_lines(polylines: &Polylines, source: &[u32]) -> Lines {
-    let mut ends = vec![false; polylines.points.len()];
-    let mut edge = vec![0.0; polylines.points.len()];
-    for (i, line) in polylines.lines.iter().enumerate().filter(|l| l.1.count > 1) {
+/// What the low-pass asks about the lines of the points, which are copies of `source`.
+fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Vec<LineOfPoint> {
+    let mut known = vec![LineOfPoint::default(); polylines.points.len()];
+    for (i, line) in polylines.lines.iter().enumerate() {
         let range = line.first..line.first + line.count;
-        edge[range.clone()].fill(polylines.mean_edge(i..i + 1));
-        ends[range.start] = !line.closed;
-        ends[range.end - 1] = !line.closed;
+        let points = &polylines.points[range.clone()];
+        let own = LineOfPoint {
+            edge: polylines.mean_edge(i..i + 1),
+            across: if line.closed {
+                unit(area(points))
+            } else {
+                [0.0; 3]
+            },
+        };
+        known[range].fill(own);
     }
-    Lines {
-        across: polylines.across(),
-        edge: source.iter().map(|&p| edge[p as usize]).collect(),
-        ends: source.iter().map(|&p| ends[p as usize]).collect(),
-    }
+    source.iter().map(|&p| known[p as usize]).collect()
+}
+
+/// Twice the area of a closed line, as a vector across its plane (Newell).
+fn area(points: &[Vec3]) -> Vec3 {
+    let around = points.iter().zip(points.iter().cycle().skip(1));
+    around.fold([0.0; 3], |sum, (p, q)| {
+        along(sum, 1.0, cross(sub(*p, points[0]), sub(*q, points[0])))
+    })
 }
 
 /// Turns each connected piece as a whole so that its normals point away from its middle.

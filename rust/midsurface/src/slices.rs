@@ -72,34 +72,20 @@ impl Polylines {
         &self.points[line.first..line.first + line.count]
     }
 
-    /// The mean point of each group of lines.
-    fn centres(&self, groups: &[Vec<usize>]) -> Vec<Vec3> {
-        let points = |group: &Vec<usize>| -> Vec<Vec3> {
-            let lines = group.iter().flat_map(|&line| self.points_of(line));
-            lines.copied().collect()
-        };
-        groups.iter().map(|group| mean(&points(group))).collect()
-    }
-
-    /// The unit vector across all slices, of either sign; rounded, so that what lies elsewhere in
-    /// the volume does not show in its last digits.
-    pub(crate) fn across(&self) -> Vec3 {
-        let groups = self.by_slice();
-        if groups.is_empty() {
-            return [0.0; 3];
-        }
-        let centres = self.centres(&groups);
-        let normal = self.slice_normal(&groups, &centres);
-        unit(normal.map(|v| (v * 1e6).round()))
-    }
-
     fn check_planes(&self) -> Result<()> {
         let groups = self.by_slice();
         if groups.len() < 2 {
             return Ok(());
         }
         let tolerance = OFF_PLANE * self.mean_edge(0..self.lines.len());
-        let centres = self.centres(&groups);
+        let points = |group: &[usize]| -> Vec<Vec3> {
+            group
+                .iter()
+                .flat_map(|&line| self.points_of(line))
+                .copied()
+                .collect()
+        };
+        let centres: Vec<Vec3> = groups.iter().map(|group| mean(&points(group))).collect();
         let normal = self.slice_normal(&groups, &centres);
         for (group, centre) in groups.iter().zip(&centres) {
             for &line in group {

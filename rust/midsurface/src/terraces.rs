@@ -5,28 +5,21 @@
 //! (Taubin, Zhang and Golub 1996) removes them without shrinking what is curved: it is a polynomial
 //! of the mesh's Laplacian K, close to 1 below the passband and to 0 above. The field it works on
 //! is a move of each point along its normal, so that nothing slides within the surface. K weighs
-//! neighbours by the inverse square of their distance, since where a sheet leans the slices'
-//! lines lie far apart; on a boundary it follows the boundary.
-//!
-//! Terraces are shallow. Where the low-pass would move a whole neighbourhood by more, it meets a
-//! true bend, as on the real membranes, and is not believed.
+//! neighbours by the inverse square of their distance, since where a sheet leans the slices' lines
+//! lie far apart; on a boundary it follows the boundary. A lower passband would remove longer
+//! terraces, too, but takes the bends of real membranes for such.
 
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, sub, unit, Vec3};
 use crate::halfedge::{ends, Edges, NONE};
 
-/// End of the passband among K's eigenvalues, 0 to 2: waves of about thirty edges.
-const PASSBAND: f64 = 0.02;
+/// End of the passband among K's eigenvalues, 0 to 2: waves of about fourteen edges.
+const PASSBAND: f64 = 0.05;
 /// Degree of the polynomial.
-const DEGREE: usize = 36;
-/// No point moves by more than this share of an edge of the lines: the half voxel, over both faces.
-const MOST: f64 = 0.2;
-/// Root mean square move of a neighbourhood, as a share of an edge, that is half believed: what
-/// terraces come to is a tenth to a sixth of a voxel.
-const TERRACE: f64 = 0.12;
-/// Passes that make the neighbourhood: some four edges.
-const NEIGHBOURHOOD: usize = 16;
+const DEGREE: usize = 24;
+/// No point moves by more than this share of its line's edges: nearly half a voxel.
+const MOST: f64 = 0.3;
 /// Passes that smooth the normals along which heights are measured.
 const SMOOTH_NORMALS: usize = 4;
 /// Towards fixed points the bound on the moves shrinks to nothing over so many rings of points.
@@ -34,17 +27,16 @@ const RINGS: u8 = 6;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 /// Passes over the points that [`flatten_terraces`] makes, for its progress.
-pub(crate) const PASSES: usize = 2 * DEGREE + NEIGHBOURHOOD + SMOOTH_NORMALS + 1;
+pub(crate) const PASSES: usize = 2 * DEGREE + SMOOTH_NORMALS + 1;
 
-/// What the filter knows of the lines that a mesh was zipped from.
-pub(crate) struct Lines {
-    /// Unit vector across all slices.
+/// What the filter knows of the line that a point is on.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct LineOfPoint {
+    /// Mean length of its edges.
+    pub edge: f64,
+    /// Unit vector across its plane; zero where it is open. On a boundary a point of a closed line
+    /// moves within that plane, any other stays: it may lie on the border of the volume.
     pub across: Vec3,
-    /// For every point the mean length of its line's edges.
-    pub edge: Vec<f64>,
-    /// For every point whether it is the end of an open line, which stays where it is: it may lie on
-    /// the border of the volume.
-    pub ends: Vec<bool>,
 }
 
 /// Neighbours of every point: those of point p, with their weights in K, are at
@@ -57,28 +49,28 @@ struct Neighbours {
 }
 
 /// Smooths the points of a manifold along their `normals`. Points on a boundary stay in their slice.
+/// `lines` tells the line of every point.
 pub(crate) fn flatten_terraces(
     points: &mut [Vec3],
     triangles: &[[u32; 3]],
     normals: &[Vec3],
-    lines: &Lines,
+    lines: &[LineOfPoint],
     execution: &mut Execution,
 ) -> Result<()> {
     if triangles.is_empty() {
         return Ok(());
     }
-    let neighbours = Neighbours::new(triangles, points, &lines.edge);
+    let neighbours = Neighbours::new(triangles, points, lines);
     let moves = moves(points, normals, &neighbours, execution)?;
-    let trust = trust(&moves, &lines.edge, &neighbours, execution)?;
-    let rings = neighbours.rings(&lines.ends);
+    let rings = neighbours.rings(lines);
     for (i, point) in points.iter_mut().enumerate() {
-        let most = MOST * lines.edge[i] * f64::from(rings[i]) / f64::from(RINGS);
+        let most = MOST * lines[i].edge * f64::from(rings[i]) / f64::from(RINGS);
         let way = if neighbours.boundary[i] {
-            within_slice(normals[i], lines.across)
+            within_slice(normals[i], lines[i].across)
         } else {
             normals[i]
         };
-        *point = along(*point, (trust[i] * moves[i]).clamp(-most, most), way);
+        *point = along(*point, moves[i].clamp(-most, most), way);
     }
     Ok(())
 }
@@ -114,31 +106,6 @@ fn moves(
         *shift -= back;
     }
     Ok(moves)
-}
-
-/// 1 where the moves are no larger than terraces ask for, 0 where they are much larger.
-fn trust(
-    moves: &[f64],
-    edge: &[f64],
-    neighbours: &Neighbours,
-    execution: &mut Execution,
-) -> Result<Vec<f64>> {
-    let mut squares: Vec<f64> = moves.iter().map(|m| m * m).collect();
-    let mut next: Vec<f64> = zeros(moves.len())?;
-    for _ in 0..NEIGHBOURHOOD {
-        execution.fill(&mut next, PIECE, |piece, out| {
-            for (i, out) in out.iter_mut().enumerate() {
-                let p = piece * PIECE + i;
-                *out = squares[p] + neighbours.rise(&squares, p);
-            }
-        })?;
-        std::mem::swap(&mut squares, &mut next);
-    }
-    let share = |(square, edge): (f64, &f64)| {
-        let half = (TERRACE * edge).powi(2).max(f64::MIN_POSITIVE);
-        1.0 / (1.0 + (square / half).powi(2))
-    };
-    Ok(squares.into_iter().zip(edge).map(share).collect())
 }
 
 /// The polynomial of the Laplacian, applied to a field by Chebyshev's recurrence: T₀ = x,
@@ -198,7 +165,7 @@ fn sinc_weights() -> Vec<f64> {
 }
 
 impl Neighbours {
-    fn new(triangles: &[[u32; 3]], points: &[Vec3], edge: &[f64]) -> Self {
+    fn new(triangles: &[[u32; 3]], points: &[Vec3], lines: &[LineOfPoint]) -> Self {
         let twins = Edges::new(triangles, points.len()).twins();
         let half_edges = || (0..twins.len()).map(|e| (ends(triangles, e as u32), twins[e] == NONE));
         let mut boundary = vec![false; points.len()];
@@ -232,7 +199,7 @@ impl Neighbours {
             let share = if is_inner(a) { 1.0 } else { 0.5 } / f64::from(count);
             list[*place as usize] = b;
             weights[*place as usize] =
-                (share * (edge[a as usize].powi(2) / dot(d, d)).min(1.0)) as f32;
+                (share * (lines[a as usize].edge.powi(2) / dot(d, d)).min(1.0)) as f32;
             *place += 1;
         }
         Self {
@@ -274,11 +241,11 @@ impl Neighbours {
         Ok(smooth)
     }
 
-    /// Rings of points between each point and a fixed one on a boundary, at most [`RINGS`].
-    fn rings(&self, fixed: &[bool]) -> Vec<u8> {
-        let is_fixed = |p: usize| fixed[p] && self.boundary[p];
-        let mut rings: Vec<u8> = (0..fixed.len())
-            .map(|p| if is_fixed(p) { 0 } else { RINGS })
+    /// Rings of points between each point and one that stays, at most [`RINGS`].
+    fn rings(&self, lines: &[LineOfPoint]) -> Vec<u8> {
+        let stays = |p: usize| self.boundary[p] && lines[p].across == [0.0; 3];
+        let mut rings: Vec<u8> = (0..lines.len())
+            .map(|p| if stays(p) { 0 } else { RINGS })
             .collect();
         for ring in 1..RINGS {
             for p in 0..rings.len() {

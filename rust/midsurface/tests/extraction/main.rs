@@ -10,6 +10,7 @@ mod frames;
 mod image_file;
 mod labels;
 mod measure;
+mod networks;
 mod observer;
 mod polylines;
 mod random_polylines;
