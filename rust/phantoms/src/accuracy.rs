@@ -29,7 +29,7 @@ pub struct Accuracy {
 }
 
 /// Distances of points spread evenly over each triangle, at least 4 a square voxel, weighted by
-/// the area they stand for.
+/// the area they stand for; and of the corners, which stand for none, but may be farthest.
 pub(crate) fn accuracy(triangles: &[[Vec3; 3]], phantom: &Phantom) -> Accuracy {
     let unit_length = phantom.frame.unit();
     let (mut all, mut inside) = (Sums::default(), Sums::default());
@@ -38,7 +38,8 @@ pub(crate) fn accuracy(triangles: &[[Vec3; 3]], phantom: &Phantom) -> Accuracy {
         let area = area(t) / (unit_length * unit_length);
         let count = (4.0 * area).ceil() as usize;
         let share = area / count as f64;
-        for p in spread(t, count) {
+        let corners = t.iter().map(|&p| (p, 0.0));
+        for (p, share) in spread(t, count).map(|p| (p, share)).chain(corners) {
             let (closest, _) = phantom.closest(p);
             let (distance, offset) = (closest.distance / unit_length, closest.offset / unit_length);
             all.add(share, distance, offset);

@@ -2,7 +2,6 @@
 
 use rstar::RTree;
 
-use crate::accuracy::spread;
 use crate::phantom::Frame;
 use crate::triangle_shape::area;
 use crate::vector::{add, cross, length, scale, sub, unit, Vec3};
@@ -69,18 +68,26 @@ pub fn mask_fit(
     }
 }
 
-/// Points all over the mesh, two a square voxel, with the normal of their triangle. Small triangles
-/// take turns, so that the points are even.
+/// Points all over the mesh, two a square voxel, with the normal of their triangle; anywhere in it,
+/// always the same. Small triangles take turns, so that the points are even.
 fn samples(points: &[[f32; 3]], triangles: &[[u32; 3]], unit_length: f64) -> Vec<(Vec3, Vec3)> {
     let mut samples = Vec::new();
     let (mut due, mut thrown) = (0.0, 0usize);
+    let mut random = fastrand::Rng::with_seed(0);
     for triangle in triangles {
         let t = triangle.map(|v| points[v as usize].map(f64::from));
         due += 2.0 * area(&t) / (unit_length * unit_length);
         let count = (due - thrown as f64) as usize;
         thrown += count;
         let normal = unit(cross(sub(t[1], t[0]), sub(t[2], t[0])));
-        samples.extend(spread(&t, count).map(|p| (p, normal)));
+        samples.extend((0..count).map(|_| {
+            let (mut u, mut v) = (random.f64(), random.f64());
+            if u + v > 1.0 {
+                (u, v) = (1.0 - u, 1.0 - v);
+            }
+            let across = add(scale(u, sub(t[1], t[0])), scale(v, sub(t[2], t[0])));
+            (add(t[0], across), normal)
+        }));
     }
     samples
 }

@@ -31,8 +31,6 @@ pub struct Limits {
     pub topology: bool,
     /// Widest gap between a junction's line and a sheet.
     pub junction_gap: f64,
-    /// Area farther than 1 voxel from the truth, square voxels.
-    pub stray_area: f64,
     /// Mean Q, at least.
     pub quality_mean: f64,
     /// Mean smallest angle, degrees, at least.
@@ -54,7 +52,6 @@ const MUST: Limits = Limits {
     normal_error: 3.0,
     topology: true,
     junction_gap: 0.5,
-    stray_area: 0.0,
     quality_mean: 0.93,
     smallest_angle_mean: 53.5,
     smallest_angle: 25.0,
@@ -150,7 +147,6 @@ impl Limits {
             ("far", report.farthest, self.farthest),
             ("normals", report.normal_error, self.normal_error),
             ("gap", report.junction_gap.unwrap_or(0.0), self.junction_gap),
-            ("stray", report.stray_area, self.stray_area),
         ];
         let missed = lengths
             .into_iter()
