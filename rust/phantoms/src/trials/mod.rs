@@ -6,6 +6,7 @@
 //! grow with the coarsest one.
 
 mod bent;
+mod frames;
 mod limits;
 mod rows;
 
