@@ -51,6 +51,7 @@ mod rim;
 mod runs;
 mod scale;
 mod separable;
+mod settle;
 mod sheet;
 mod slice;
 mod slices;

@@ -21,6 +21,7 @@ use crate::midway::move_midway;
 use crate::profile::Profile;
 use crate::remesh::remesh;
 use crate::rim::sheet_fraction;
+use crate::settle::settle;
 use crate::thickness::View;
 use crate::trim::{drop_scraps, trim};
 
@@ -112,6 +113,9 @@ fn cut_surface(
         &mut sheets,
         execution,
     )?;
+    for _ in 0..std::env::var("SETTLE").map_or(2, |v| v.parse().unwrap()) {
+        settle(batch, &mut sheets, h, execution)?;
+    }
     let contour = contour(batch, &sheets, h, execution)?;
     let fraction = sheet_fraction(batch, &sheets, distance, h, execution)?;
     drop(sheets);

@@ -7,37 +7,54 @@
 //! fraction rises far enough (hysteresis, as in Canny 1986).
 
 use crate::components::DisjointSets;
-use crate::error::Result;
-use crate::grid::{along, cross, length, sub};
+use crate::error::{reserved, zeros, Result};
+use crate::grid::{along, cross, length, sub, Vec3};
 use crate::halfedge::{ends, Edges};
-use crate::manifold::Surface;
+use crate::manifold::{make_manifold, Surface};
 
 /// The sheet fraction at a rim.
 const RIM: f64 = 0.5;
 /// A hole is at least this empty somewhere, and a sheet this full.
 const HOLE: f64 = 0.25;
 const SHEET: f64 = 0.75;
+/// Points this near to the cut, in the length of the edge that it crosses, are moved onto it.
+const SNAP: f32 = 0.3;
 /// A cut keeps this share of an edge away from its ends: no triangle becomes a point.
 const CLEAR: f64 = 0.02;
 
+/// Which side of the cut a point is on.
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Kept,
+    Rim,
+    Cut,
+}
+
 /// Cuts `surface` where `fraction`, given at its points, is ½.
 pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
-    let above = sides(surface, fraction);
+    let above = above(surface, fraction);
     if above.iter().all(|&a| a) {
         return Ok(());
     }
     let triangles = std::mem::take(&mut surface.triangles);
     let edges = Edges::new(&triangles, surface.points.len());
+    let mut side: Vec<Side> = reserved(above.len())?;
+    side.extend(
+        above
+            .iter()
+            .map(|a| if *a { Side::Kept } else { Side::Cut }),
+    );
+    snap(surface, fraction, &edges, &mut side)?;
     let mut cut = vec![0u32; 3 * triangles.len()];
     for (a, b, group) in edges.groups() {
-        if above[a as usize] != above[b as usize] {
+        let [p, q] = [a, b].map(|p| p as usize);
+        if matches!(
+            (side[p], side[q]),
+            (Side::Kept, Side::Cut) | (Side::Cut, Side::Kept)
+        ) {
             let new = surface.points.len() as u32;
-            let [p, q] = [a, b].map(|p| p as usize);
-            // Where hysteresis overruled the fraction, the cut is next to the point it kept.
-            let t = (RIM - fraction[p]) / (fraction[q] - fraction[p]);
-            let t = if t.is_finite() { t } else { 0.5 };
-            let t = t.clamp(CLEAR, 1.0 - CLEAR);
             let (from, to) = (surface.points[p], surface.points[q]);
+            let t = crossing(fraction[p], fraction[q]);
             surface.points.push(along(from, t, sub(to, from)));
             surface.source.push(surface.source[p]);
             for &(_, half_edge) in group {
@@ -45,21 +62,57 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
             }
         }
     }
-    for (t, triangle) in triangles.iter().enumerate() {
+    for t in 0..triangles.len() {
         keep(
-            triangle,
             3 * t as u32,
-            &above,
+            &side,
             &cut,
             &triangles,
             &mut surface.triangles,
         );
     }
+    // Where two cuts met in a point.
+    make_manifold(surface);
+    Ok(())
+}
+
+/// Where between two points the fraction is that of a rim; next to the first one's end where
+/// hysteresis overruled the fraction.
+fn crossing(from: f64, to: f64) -> f64 {
+    let t = (RIM - from) / (to - from);
+    let t = if t.is_finite() { t } else { 0.5 };
+    t.clamp(CLEAR, 1.0 - CLEAR)
+}
+
+/// Moves points that the cut passes close by onto it, so that it leaves no slivers.
+fn snap(surface: &mut Surface, fraction: &[f64], edges: &Edges, side: &mut [Side]) -> Result<()> {
+    // For each point the nearest crossing on its edges: share of the edge, and the other end.
+    let mut nearest: Vec<(f32, u32)> = zeros(side.len())?;
+    for (a, b, _) in edges.groups() {
+        let [p, q] = [a, b].map(|p| p as usize);
+        if side[p] == side[q] {
+            continue;
+        }
+        let t = crossing(fraction[p], fraction[q]) as f32;
+        for (own, share, other) in [(p, t, b), (q, 1.0 - t, a)] {
+            if share < SNAP && (nearest[own].0 == 0.0 || share < nearest[own].0) {
+                nearest[own] = (share, other);
+            }
+        }
+    }
+    let before: Vec<Vec3> = surface.points.clone();
+    for (p, (share, other)) in nearest.into_iter().enumerate() {
+        if share > 0.0 {
+            let way = sub(before[other as usize], before[p]);
+            surface.points[p] = along(before[p], share.into(), way);
+            side[p] = Side::Rim;
+        }
+    }
     Ok(())
 }
 
 /// Whether each point stays.
-fn sides(surface: &Surface, fraction: &[f64]) -> Vec<bool> {
+fn above(surface: &Surface, fraction: &[f64]) -> Vec<bool> {
     let mut above: Vec<bool> = fraction.iter().map(|f| *f >= RIM).collect();
     let mut regions = DisjointSets::new(above.len());
     for t in &surface.triangles {
@@ -82,33 +135,35 @@ fn sides(surface: &Surface, fraction: &[f64]) -> Vec<bool> {
     above
 }
 
-/// Appends what is left of one triangle, whose first half-edge is given.
-fn keep(
-    triangle: &[u32; 3],
-    first: u32,
-    above: &[bool],
-    cut: &[u32],
-    triangles: &[[u32; 3]],
-    kept: &mut Vec<[u32; 3]>,
-) {
-    let stays = triangle.map(|p| above[p as usize]);
-    let count = stays.iter().filter(|s| **s).count();
-    if count == 3 {
-        kept.push(*triangle);
-    }
-    if count == 0 || count == 3 {
-        return;
-    }
-    // Turned so that the corner that is alone on its side comes first.
-    let alone = (0..3).find(|&k| stays[k] == (count == 1)).unwrap_or(0);
-    let half_edge = |k: usize| first + ((alone + k) % 3) as u32;
-    let [a, b, c] = [0, 1, 2].map(|k| ends(triangles, half_edge(k)).0);
-    let (ab, ca) = (cut[half_edge(0) as usize], cut[half_edge(2) as usize]);
-    if count == 1 {
-        kept.push([a, ab, ca]);
-    } else {
-        kept.push([ab, b, c]);
-        kept.push([ab, c, ca]);
+/// Appends what is left of the triangle with this first half-edge.
+fn keep(first: u32, side: &[Side], cut: &[u32], triangles: &[[u32; 3]], kept: &mut Vec<[u32; 3]>) {
+    let corner = |k: u32| ends(triangles, first + k % 3).0;
+    let is = |k: u32, which: Side| side[corner(k) as usize] == which;
+    let count = |which: Side| (0..3).filter(|&k| is(k, which)).count();
+    let turned = |which: Side| (0..3).find(|&k| is(k, which)).unwrap_or(0);
+    let new = |k: u32| cut[(first + k % 3) as usize];
+    match (count(Side::Kept), count(Side::Cut)) {
+        (0, _) => {}
+        (_, 0) => kept.push([0, 1, 2].map(corner)),
+        (1, 2) => {
+            let k = turned(Side::Kept);
+            kept.push([corner(k), new(k), new(k + 2)]);
+        }
+        (2, _) => {
+            let k = turned(Side::Cut);
+            let (b, c) = (corner(k + 1), corner(k + 2));
+            kept.push([new(k), b, c]);
+            kept.push([new(k), c, new(k + 2)]);
+        }
+        _ => {
+            // One corner of each kind: the cut runs from the rim's to the edge across.
+            let k = turned(Side::Cut);
+            if is(k + 1, Side::Kept) {
+                kept.push([new(k), corner(k + 1), corner(k + 2)]);
+            } else {
+                kept.push([corner(k + 1), corner(k + 2), new(k + 2)]);
+            }
+        }
     }
 }
 

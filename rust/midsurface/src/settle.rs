@@ -1,0 +1,79 @@
+//! Sheets that agree: each voxel's offset becomes the mean of what it and its neighbours say.
+//!
+//! Neighbours on one sheet know of the same surface, each with an error of its own. What a neighbour
+//! says of a voxel follows from the mean of both normals, which is exact to second order, so that a
+//! curved sheet is not flattened. Voxels that do not speak of the same sheet are not asked.
+
+use crate::block::{row, Block, SIDE};
+use crate::bricks::{Batch, BRICK, EDGE};
+use crate::error::Result;
+use crate::execution::Execution;
+use crate::grid::Vec3;
+use crate::sheet::{dot, Sheet};
+
+/// Neighbours that speak of the same sheet: normals within this cosine, offsets within this many
+/// work units.
+const ALIKE: f32 = 0.6;
+const NEAR: f32 = 1.2;
+/// What a voxel says itself counts as much as so many neighbours.
+const OWN: f32 = 2.0;
+
+/// Lets the sheets settle, once.
+pub(crate) fn settle(
+    batch: &Batch,
+    sheets: &mut Vec<Sheet>,
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<()> {
+    let before = &*sheets;
+    let settled = execution.collect(batch.part_of_brick.len(), |brick| {
+        let own = &before[brick * BRICK..][..BRICK];
+        if own.iter().all(|sheet| *sheet == Sheet::default()) {
+            return [Sheet::default(); BRICK];
+        }
+        let block = Block::gather(batch, brick, before);
+        std::array::from_fn(|i| {
+            let at = row(i / EDGE % EDGE, i / EDGE / EDGE) + i % EDGE;
+            agreed(&block.values, at, h)
+        })
+    })?;
+    *sheets = settled.into_flattened();
+    Ok(())
+}
+
+/// What a voxel and its six neighbours agree on.
+fn agreed(sheets: &[Sheet], at: usize, h: Vec3) -> Sheet {
+    let own = sheets[at];
+    if own == Sheet::default() {
+        return own;
+    }
+    let n = [own[0], own[1], own[2]];
+    let mut sum = own.map(|v| OWN * v);
+    let mut count = OWN;
+    for (axis, stride) in [1, SIDE, SIDE * SIDE].into_iter().enumerate() {
+        for (neighbour, step) in [
+            (at - stride, h[axis] as f32),
+            (at + stride, -h[axis] as f32),
+        ] {
+            let other = sheets[neighbour];
+            let cosine = dot([other[0], other[1], other[2]], n);
+            let turn = if cosine < 0.0 { -1.0 } else { 1.0 };
+            // The voxel lies `step` from its neighbour.
+            let said = turn * other[3] - 0.5 * (n[axis] + turn * other[axis]) * step;
+            if cosine.abs() >= ALIKE && (said - own[3]).abs() <= NEAR {
+                for k in 0..3 {
+                    sum[k] += turn * other[k];
+                }
+                sum[3] += said;
+                count += 1.0;
+            }
+        }
+    }
+    let length = dot([sum[0], sum[1], sum[2]], [sum[0], sum[1], sum[2]]).sqrt();
+    [
+        sum[0] / length,
+        sum[1] / length,
+        sum[2] / length,
+        sum[3] / count,
+    ]
+}
