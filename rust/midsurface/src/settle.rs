@@ -12,11 +12,9 @@ use crate::grid::Vec3;
 use crate::sheet::{dot, Sheet};
 
 /// Neighbours that speak of the same sheet: normals within this cosine, offsets within this many
-/// work units.
+/// work units of the one in the middle.
 const ALIKE: f32 = 0.6;
-const NEAR: f32 = 1.2;
-/// What a voxel says itself counts as much as so many neighbours.
-const OWN: f32 = 2.0;
+const NEAR: f32 = 0.7;
 
 /// Lets the sheets settle, once.
 pub(crate) fn settle(
@@ -48,8 +46,8 @@ fn agreed(sheets: &[Sheet], at: usize, h: Vec3) -> Sheet {
         return own;
     }
     let n = [own[0], own[1], own[2]];
-    let mut sum = own.map(|v| OWN * v);
-    let mut count = OWN;
+    let mut said = [own; 7];
+    let mut count = 1;
     for (axis, stride) in [1, SIDE, SIDE * SIDE].into_iter().enumerate() {
         for (neighbour, step) in [
             (at - stride, h[axis] as f32),
@@ -57,23 +55,38 @@ fn agreed(sheets: &[Sheet], at: usize, h: Vec3) -> Sheet {
         ] {
             let other = sheets[neighbour];
             let cosine = dot([other[0], other[1], other[2]], n);
-            let turn = if cosine < 0.0 { -1.0 } else { 1.0 };
-            // The voxel lies `step` from its neighbour.
-            let said = turn * other[3] - 0.5 * (n[axis] + turn * other[axis]) * step;
-            if cosine.abs() >= ALIKE && (said - own[3]).abs() <= NEAR {
-                for k in 0..3 {
-                    sum[k] += turn * other[k];
-                }
-                sum[3] += said;
-                count += 1.0;
+            if cosine.abs() >= ALIKE {
+                // The voxel lies `step` from its neighbour.
+                let turned = other.map(|v| v * cosine.signum());
+                let offset = turned[3] - 0.5 * (n[axis] + turned[axis]) * step;
+                said[count] = [turned[0], turned[1], turned[2], offset];
+                count += 1;
             }
         }
     }
+    let said = &mut said[..count];
+    said.sort_unstable_by(|a, b| a[3].total_cmp(&b[3]));
+    // The middle one of them, so that a single voxel that is wrong is overruled.
+    let middle = 0.5 * (said[(count - 1) / 2][3] + said[count / 2][3]);
+    let mut sum = [0.0; 4];
+    let mut agreed = 0.0;
+    for sheet in said
+        .iter()
+        .filter(|sheet| (sheet[3] - middle).abs() <= NEAR)
+    {
+        for (sum, v) in sum.iter_mut().zip(sheet) {
+            *sum += v;
+        }
+        agreed += 1.0;
+    }
     let length = dot([sum[0], sum[1], sum[2]], [sum[0], sum[1], sum[2]]).sqrt();
+    if agreed == 0.0 || length == 0.0 {
+        return own;
+    }
     [
         sum[0] / length,
         sum[1] / length,
         sum[2] / length,
-        sum[3] / count,
+        sum[3] / agreed,
     ]
 }
