@@ -33,6 +33,8 @@ const MIDWAY: usize = 2;
 const EDGE_LENGTH: f64 = std::f64::consts::SQRT_2;
 /// How far offsets are followed, in the coarsest spacing.
 const FARTHEST: f64 = 2.0;
+/// Times that neighbouring sheets settle.
+const SETTLINGS: usize = 4;
 /// Rings of voxels that sheets are extended by, at most.
 const RINGS: usize = 12;
 /// Points handed to a worker at a time.
@@ -113,7 +115,7 @@ fn cut_surface(
         &mut sheets,
         execution,
     )?;
-    for _ in 0..std::env::var("SETTLE").map_or(2, |v| v.parse().unwrap()) {
+    for _ in 0..SETTLINGS {
         settle(batch, &mut sheets, h, execution)?;
     }
     let contour = contour(batch, &sheets, h, execution)?;
