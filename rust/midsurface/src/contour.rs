@@ -186,14 +186,14 @@ fn edge_of_cube(base: usize, edge: usize) -> (usize, usize) {
 /// faces chain together have the same.
 fn corners(block: &Block, base: usize, edges: u16) -> [u8; 12] {
     let mut chain: [u8; 12] = std::array::from_fn(|edge| edge as u8);
-    for axis in 0..3 {
+    for (axis, stride) in STRIDE.into_iter().enumerate() {
         for side in 0..2 {
             // Around the face: along b, along c at the far end of b, and so on.
             let b = 4 * ((axis + 1) % 3);
             let c = 4 * ((axis + 2) % 3);
             let ring = [b + 2 * side, c + side + 2, b + 2 * side + 1, c + side];
             let crossed = ring.map(|edge| edges >> edge & 1 == 1);
-            for (i, j) in block.pairs(base + side * STRIDE[axis], axis, crossed) {
+            for (i, j) in block.pairs(base + side * stride, axis, crossed) {
                 let (from, to) = (chain[ring[i]], chain[ring[j]]);
                 chain
                     .iter_mut()
@@ -336,8 +336,8 @@ impl Block {
                 continue;
             }
             let voxel = [at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE];
-            for axis in 0..3 {
-                if voxel[axis] + 1 < SIDE && self.is_crossed(at, axis) {
+            for (axis, place) in voxel.into_iter().enumerate() {
+                if place + 1 < SIDE && self.is_crossed(at, axis) {
                     self.crossed[at] |= 1 << axis;
                 }
             }

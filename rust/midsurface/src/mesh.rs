@@ -182,12 +182,7 @@ impl Mesh {
                     .get_mut(p as usize)
                     .ok_or(InvariantViolation::PointIndex(i))? = true;
             }
-            let [a, b, c] = triangle.map(|p| self.points[p as usize].map(f64::from));
-            let area = length(cross(sub(b, a), sub(c, a)));
-            let longest = length(sub(b, a))
-                .max(length(sub(c, b)))
-                .max(length(sub(a, c)));
-            if area.is_nan() || area <= 1e-9 * longest * longest {
+            if is_degenerate(triangle.map(|p| self.points[p as usize])) {
                 return Err(InvariantViolation::Degenerate(i));
             }
         }
@@ -218,6 +213,16 @@ impl Mesh {
         }
         Ok(())
     }
+}
+
+/// Whether a triangle has no area to speak of.
+pub(crate) fn is_degenerate(corners: [[f32; 3]; 3]) -> bool {
+    let [a, b, c] = corners.map(|p| p.map(f64::from));
+    let area = length(cross(sub(b, a), sub(c, a)));
+    let longest = length(sub(b, a))
+        .max(length(sub(c, b)))
+        .max(length(sub(a, c)));
+    area.is_nan() || area <= 1e-9 * longest * longest
 }
 
 /// The line each point of the polylines is on.

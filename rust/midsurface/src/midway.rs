@@ -12,6 +12,7 @@ use crate::execution::Execution;
 use crate::grid::{along, Vec3};
 use crate::interpolation::Sampler;
 use crate::manifold::Surface;
+use crate::mesh::normals;
 use crate::thickness::View;
 
 /// Sheet fraction below which the faces seen may be a rim's.
@@ -27,17 +28,33 @@ const PIECE: usize = 1024;
 /// How far off each point is, and how much of that was seen there.
 type Seen = [f32; 2];
 
-/// Moves the points of `surface` midway, with `normals` and the sheet `fraction` at its points.
+/// What is known of the label where a surface is moved.
+pub(crate) struct Label<'a> {
+    pub batch: &'a Batch<'a>,
+    /// Distance to the outside at the voxels, work units.
+    pub distance: &'a [f32],
+    /// Part of each point's source.
+    pub part: &'a [u32],
+    /// Sheet fraction at each point.
+    pub fraction: &'a [f64],
+    /// The work spacing.
+    pub h: Vec3,
+}
+
+/// Moves the points of `surface` midway.
 pub(crate) fn move_midway(
-    batch: &Batch,
-    distance: &[f32],
-    part: &[u32],
-    fraction: &[f64],
-    normals: &[Vec3],
+    label: &Label,
     surface: &mut Surface,
-    h: Vec3,
     execution: &mut Execution,
 ) -> Result<()> {
+    let Label {
+        batch,
+        distance,
+        part,
+        fraction,
+        h,
+    } = *label;
+    let normals = &normals(&surface.points, &surface.triangles);
     let mut seen: Vec<Seen> = zeros(surface.points.len())?;
     let points = &surface.points;
     let source = &surface.source;

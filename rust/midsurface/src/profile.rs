@@ -125,8 +125,8 @@ impl Derivatives {
             };
             let g: [f32; 3] = std::array::from_fn(|k| gradient[k][i] * inverse);
             self.value[i] += w * value[i];
-            for k in 0..3 {
-                self.gradient[k][i] += w * g[k];
+            for (sum, g) in self.gradient.iter_mut().zip(g) {
+                sum[i] += w * g;
             }
             let products = [
                 g[0] * g[0],

@@ -16,8 +16,8 @@ use crate::extension::extend;
 use crate::grid::{Grid, Vec3};
 use crate::interpolation::Sampler;
 use crate::manifold::{make_manifold, Surface};
-use crate::mesh::{normals, turn_outward, Mesh};
-use crate::midway::move_midway;
+use crate::mesh::{is_degenerate, normals, turn_outward, Mesh};
+use crate::midway::{move_midway, Label};
 use crate::profile::Profile;
 use crate::remesh::remesh;
 use crate::rim::sheet_fraction;
@@ -37,6 +37,8 @@ const FARTHEST: f64 = 2.0;
 const SETTLINGS: usize = 4;
 /// Rings of voxels that sheets are extended by, at most.
 const RINGS: usize = 12;
+/// Rounds of dropping triangles without area.
+const MENDINGS: usize = 4;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 
@@ -58,18 +60,15 @@ pub(crate) fn ridge_surface(
     let (mut surface, part, fraction) = cut_surface(batch, &distance, h, execution)?;
     execution.stage("Moving midway", at(0.5), at(0.7), 30)?;
     let fraction = values(batch, &surface, &part, &fraction, h, execution)?;
+    let label = Label {
+        batch,
+        distance: &distance,
+        part: &part,
+        fraction: &fraction,
+        h,
+    };
     for _ in 0..MIDWAY {
-        let normals = normals(&surface.points, &surface.triangles);
-        move_midway(
-            batch,
-            &distance,
-            &part,
-            &fraction,
-            &normals,
-            &mut surface,
-            h,
-            execution,
-        )?;
+        move_midway(&label, &mut surface, execution)?;
     }
     turn_outward(&surface.points, &mut surface.triangles);
     execution.stage("Remeshing", at(0.7), at(1.0), PASSES)?;
@@ -80,10 +79,10 @@ pub(crate) fn ridge_surface(
     let remeshed = remesh(&surface.points, &surface.triangles, wanted, execution)?;
     let part_of = |origin: u32| {
         let corner = surface.triangles[origin as usize][0];
-        part[surface.source[corner as usize] as usize] as usize
+        part[surface.source[corner as usize] as usize]
     };
-    let found = Found {
-        parts: remeshed
+    let found = Surface {
+        source: remeshed
             .origin
             .iter()
             .map(|o| part_of(o.triangle))
@@ -91,7 +90,32 @@ pub(crate) fn ridge_surface(
         points: remeshed.points,
         triangles: remeshed.triangles,
     };
-    append(batch, &distance, grid, &found, mesh, execution)
+    append(batch, &distance, grid, sound(found, grid)?, mesh, execution)
+}
+
+/// Puts points that the remesher moved beyond the border of the volume back onto it, and drops
+/// triangles that have no area in the mesh's own precision: they are left where two rims meet.
+fn sound(mut surface: Surface, grid: &Grid) -> Result<Surface> {
+    let h = grid.work_spacing();
+    for p in &mut surface.points {
+        *p = std::array::from_fn(|a| p[a].clamp(0.0, (grid.dimensions[a] as f64 - 1.0) * h[a]));
+    }
+    for _ in 0..MENDINGS {
+        let count = surface.triangles.len();
+        let points = &surface.points;
+        surface.triangles.retain(|t| {
+            let world = |p: u32| {
+                let voxel = std::array::from_fn(|a| points[p as usize][a] / h[a]);
+                grid.world(voxel).map(|v| v as f32)
+            };
+            !is_degenerate(t.map(world))
+        });
+        if surface.triangles.len() == count {
+            break;
+        }
+        make_manifold(&mut surface);
+    }
+    surface.compact()
 }
 
 /// The contour of the batch's sheets, cut at the rims; the part of each point's source, and the
@@ -133,13 +157,6 @@ fn cut_surface(
     Ok((surface.compact()?, contour.part, fraction))
 }
 
-/// A finished surface, work units, with the part of each point.
-struct Found {
-    points: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
-    parts: Vec<usize>,
-}
-
 /// The value of a field at every point of a surface.
 fn values(
     batch: &Batch,
@@ -165,12 +182,12 @@ fn values(
     Ok(values)
 }
 
-/// Appends a finished surface to the mesh, in world coordinates.
+/// Appends a finished surface to the mesh, in world coordinates; `source` is the part of each point.
 fn append(
     batch: &Batch,
     distance: &[f32],
     grid: &Grid,
-    found: &Found,
+    found: Surface,
     mesh: &mut Mesh,
     execution: &mut Execution,
 ) -> Result<()> {
@@ -180,7 +197,7 @@ fn append(
     execution.fill(&mut thickness, PIECE, |piece, out| {
         for (i, out) in out.iter_mut().enumerate() {
             let p = PIECE * piece + i;
-            let directory = &batch.directories[found.parts[p]];
+            let directory = &batch.directories[found.source[p] as usize];
             let sampler = Sampler {
                 directory,
                 field: distance,
@@ -192,7 +209,7 @@ fn append(
     })?;
     let first = mesh.points.len() as u32;
     for triangle in &found.triangles {
-        let part = &batch.parts[found.parts[triangle[0] as usize]];
+        let part = &batch.parts[found.source[triangle[0] as usize] as usize];
         mesh.triangles.push(triangle.map(|p| first + p));
         mesh.labels.push(part.label);
         mesh.components.push(part.component);
