@@ -58,30 +58,34 @@ impl BrickMeans {
         {
             return [first[0] / first[1]; BRICK];
         }
-        std::array::from_fn(|i| {
-            let voxel = [i % EDGE, i / EDGE % EDGE, i / LAYER];
-            ratio(&around, voxel.map(|v| (v as f32 + 0.5) / EDGE as f32))
-        })
+        interpolate(&around)
     }
 }
 
-/// Ratio of both sums at a place within the middle one of 27 bricks, 0 to 1 along each axis.
-fn ratio(around: &[[f32; 2]; 27], at: [f32; 3]) -> f32 {
-    let weights = at.map(|t| {
-        let t = t - 0.5;
+/// Ratio of both sums at the voxels of the middle one of 27 bricks, the sums linear between the
+/// bricks' centres.
+fn interpolate(around: &[[f32; 2]; 27]) -> [f32; BRICK] {
+    let weights: [[f32; 3]; EDGE] = std::array::from_fn(|v| {
+        let t = (v as f32 + 0.5) / EDGE as f32 - 0.5;
         [(-t).max(0.0), 1.0 - t.abs(), t.max(0.0)]
     });
-    let (mut value, mut weight) = (0.0, 0.0);
-    for (i, sums) in around.iter().enumerate() {
-        let w = weights[0][i % 3] * weights[1][i / 3 % 3] * weights[2][i / 9];
-        value += w * sums[0];
-        weight += w * sums[1];
+    let mean = |w: &[f32; 3], sums: [[f32; 2]; 3]| -> [f32; 2] {
+        std::array::from_fn(|k| w[0] * sums[0][k] + w[1] * sums[1][k] + w[2] * sums[2][k])
+    };
+    let mut ratios = [0.0; BRICK];
+    for (along_z, layer) in weights.iter().zip(ratios.chunks_exact_mut(LAYER)) {
+        let plane: [[f32; 2]; 9] =
+            std::array::from_fn(|i| mean(along_z, [around[i], around[i + 9], around[i + 18]]));
+        for (along_y, row) in weights.iter().zip(layer.chunks_exact_mut(EDGE)) {
+            let line: [[f32; 2]; 3] =
+                std::array::from_fn(|i| mean(along_y, [plane[i], plane[i + 3], plane[i + 6]]));
+            for (along_x, ratio) in weights.iter().zip(row) {
+                let [value, weight] = mean(along_x, line);
+                *ratio = if weight > 0.0 { value / weight } else { 0.0 };
+            }
+        }
     }
-    if weight > 0.0 {
-        value / weight
-    } else {
-        0.0
-    }
+    ratios
 }
 
 /// The local half thickness.
