@@ -85,11 +85,11 @@ fn ring(known: &Block<Sheet>, near: &[f32; BRICK], farthest: f32, h: Vec3) -> Ve
     learnt
 }
 
-/// What the known neighbours of a voxel say of its sheet, led by the one whose sheet is nearest.
+/// What the known neighbours of a voxel say of its sheet: the mean of those that agree with the
+/// middle one.
 fn continued(known: &Block<Sheet>, at: usize, h: Vec3) -> Option<Sheet> {
     let mut said = [Sheet::default(); 26];
     let mut count = 0;
-    let mut lead = 0;
     for step in (0..27).filter(|&step| step != 13) {
         let step = [step % 3, step / 3 % 3, step / 9];
         let neighbour =
@@ -102,15 +102,16 @@ fn continued(known: &Block<Sheet>, at: usize, h: Vec3) -> Option<Sheet> {
         let apart: [f32; 3] = std::array::from_fn(|a| (1.0 - step[a] as f32) * h[a] as f32);
         let n = [sheet[0], sheet[1], sheet[2]];
         said[count] = [n[0], n[1], n[2], sheet[3] - dot(n, apart)];
-        if said[count][3].abs() < said[lead][3].abs() {
-            lead = count;
+        if dot(n, [said[0][0], said[0][1], said[0][2]]) < 0.0 {
+            said[count] = said[count].map(|v| -v);
         }
         count += 1;
     }
     if count == 0 {
         return None;
     }
-    let first = said[lead];
+    said[..count].sort_unstable_by(|a, b| a[3].total_cmp(&b[3]));
+    let first = said[count / 2];
     let normal = |s: &Sheet| [s[0], s[1], s[2]];
     let mut sum = [0.0; 4];
     let mut agreed = 0.0;
