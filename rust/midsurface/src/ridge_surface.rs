@@ -22,6 +22,7 @@ use crate::profile::Profile;
 use crate::remesh::remesh;
 use crate::rim::sheet_fraction;
 use crate::settle::settle;
+use crate::terraces::{flatten_terraces, LineOfPoint};
 use crate::thickness::View;
 use crate::trim::{drop_scraps, trim};
 
@@ -90,7 +91,26 @@ pub(crate) fn ridge_surface(
         points: remeshed.points,
         triangles: remeshed.triangles,
     };
+    let mut found = sound(found, grid)?;
+    flatten(&mut found, wanted, execution)?;
     append(batch, &distance, grid, sound(found, grid)?, mesh, execution)
+}
+
+/// Removes the terraces of sheets nearly parallel to a lattice plane; rims stay.
+fn flatten(surface: &mut Surface, edge: f64, execution: &mut Execution) -> Result<()> {
+    let point = LineOfPoint {
+        edge,
+        ..LineOfPoint::default()
+    };
+    let points = vec![point; surface.points.len()];
+    let normals = normals(&surface.points, &surface.triangles);
+    flatten_terraces(
+        &mut surface.points,
+        &surface.triangles,
+        &normals,
+        &points,
+        execution,
+    )
 }
 
 /// Puts points that the remesher moved beyond the border of the volume back onto it, and drops
