@@ -1,4 +1,6 @@
 """Names, defaults and places of the filters in ParaView."""
+import os
+import tempfile
 
 from paraview import servermanager, simple
 
@@ -39,6 +41,16 @@ class Properties(FilterTest):
             simple.SetActiveSource(mesh)
             proxy = create(Input=first, Segmentation=["POINTS", "second"])
             self.assertEqual(list(proxy.Segmentation), ["POINTS", "second"])
+
+    def test_the_array_of_an_input_that_has_not_run_yet(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "sheets.vti")
+            simple.SaveData(path, source(image(sheets())), DataMode="Binary")
+            mesh, messages = update(
+                simple.MidSurface(Input=simple.XMLImageDataReader(FileName=[path]))
+            )
+            self.assertEqual(messages.errors + messages.warnings, [])
+            self.assertEqual(set(arrays(mesh)["cell Label"]), {1, 2, 3})
 
     def test_menu_and_help(self):
         manager = servermanager.ProxyManager().SMProxyManager
