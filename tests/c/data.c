@@ -93,7 +93,9 @@ static void labels_must_be_whole_numbers(void)
   }
   refused(&of_doubles, "-0.25 at voxel [3, 4, 5]");
   integers[voxel] = UINT64_MAX;
-  refused(&of_integers, "18446744073709551615");
+  refused(&of_integers, "18446744073709551615 at voxel [3, 4, 5], which is too large for a label");
+  doubles[voxel] = 1e20;
+  refused(&of_doubles, "too large for a label");
 }
 
 static void labels_that_are_not_there_are_refused(void)

@@ -6,6 +6,7 @@ void test_data(void);
 void test_runs(void);
 void test_callbacks(void);
 void test_polylines(void);
+void test_statistics(void);
 
 int main(void)
 {
@@ -14,5 +15,6 @@ int main(void)
   test_runs();
   test_callbacks();
   test_polylines();
+  test_statistics();
   return finish_tests();
 }

@@ -143,6 +143,35 @@ static void every_scalar_type_gives_the_same_mesh(void)
   midsurface_mesh_free(expected);
 }
 
+/* Everything at or above a threshold is label 1. */
+static void a_map_with_a_threshold_gives_the_mesh_of_its_label(void)
+{
+  static uint8_t scalars[VOXELS];
+  static float map[VOXELS];
+  const midsurface_options options = midsurface_options_default();
+  midsurface_volume labels = tube(scalars);
+  for (int voxel = 0; voxel < VOXELS; voxel++)
+  {
+    map[voxel] = scalars[voxel] ? 0.7F : voxel % 2 ? 0.6F : NAN;
+  }
+  midsurface_volume volume = volume_of(map, MIDSURFACE_SCALAR_TYPE_FLOAT32);
+  volume.use_threshold = true;
+  volume.threshold = 0.65;
+  midsurface_mesh* expected = extracted(&labels, &options);
+  midsurface_mesh* mesh = extracted(&volume, &options);
+  CHECK(arrays_of(mesh).triangle_count > 0);
+  CHECK(same_mesh(expected, mesh));
+  midsurface_mesh_free(mesh);
+
+  midsurface_error* error = NULL;
+  volume.threshold = NAN;
+  CHECK_INVALID(midsurface_extract(&volume, &options, &mesh, &error), error, "threshold");
+  volume.threshold = 0.5F;
+  volume.use_threshold = false;
+  CHECK_INVALID(midsurface_extract(&volume, &options, &mesh, &error), error, "whole numbers");
+  midsurface_mesh_free(expected);
+}
+
 static void the_frame_places_the_mesh(void)
 {
   static uint8_t scalars[VOXELS];
@@ -276,6 +305,7 @@ void test_runs(void)
   RUN(sheets_lie_in_the_middle);
   RUN(no_labels_give_no_mesh);
   RUN(every_scalar_type_gives_the_same_mesh);
+  RUN(a_map_with_a_threshold_gives_the_mesh_of_its_label);
   RUN(the_frame_places_the_mesh);
   RUN(the_number_of_threads_does_not_matter);
   RUN(two_runs_at_once_do_not_meet);

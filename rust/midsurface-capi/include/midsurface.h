@@ -61,6 +61,24 @@ typedef enum midsurface_status {
 } midsurface_status;
 
 /**
+ * What a row is about.
+ */
+typedef enum midsurface_scope {
+  /**
+   * All triangles.
+   */
+  MIDSURFACE_SCOPE_TOTAL = 0,
+  /**
+   * Those of one label.
+   */
+  MIDSURFACE_SCOPE_LABEL,
+  /**
+   * Those of one component, of one label where labels are known.
+   */
+  MIDSURFACE_SCOPE_COMPONENT,
+} midsurface_scope;
+
+/**
  * The type of a volume's scalars: values for the field `scalar_type` of midsurface_volume.
  */
 typedef enum midsurface_scalar_type {
@@ -142,7 +160,13 @@ typedef struct midsurface_mesh midsurface_mesh;
 typedef struct midsurface_polylines midsurface_polylines;
 
 /**
- * A label volume: an integer a voxel, 0 for background. Borrowed for a call, never copied.
+ * The table of a mesh's figures. Freed with midsurface_statistics_free.
+ */
+typedef struct midsurface_statistics midsurface_statistics;
+
+/**
+ * A label volume: an integer a voxel, 0 for background; or a map, such as a probability, of which
+ * everything at or above a threshold is label 1. Borrowed for a call, never copied.
  */
 typedef struct midsurface_volume {
   /**
@@ -179,6 +203,14 @@ typedef struct midsurface_volume {
    * coordinates; 1 0 0 0 1 0 0 0 1 for most images.
    */
   double direction[9];
+  /**
+   * Whether the scalars are a map, of any values, with a threshold. False for labels.
+   */
+  bool use_threshold;
+  /**
+   * Where use_threshold: the least value of label 1, finite; else not looked at.
+   */
+  double threshold;
 } midsurface_volume;
 
 /**
@@ -317,6 +349,119 @@ typedef struct midsurface_polyline_arrays {
    */
   const int64_t *slices;
 } midsurface_polyline_arrays;
+
+/**
+ * A triangle mesh of any origin. Borrowed for a call, never copied.
+ */
+typedef struct midsurface_triangle_mesh {
+  /**
+   * World coordinates, x y z: 3 * point_count values.
+   */
+  const double *points;
+  /**
+   * Number of points.
+   */
+  size_t point_count;
+  /**
+   * Point indices, three a triangle: 3 * triangle_count values.
+   */
+  const int64_t *triangles;
+  /**
+   * Number of triangles.
+   */
+  size_t triangle_count;
+  /**
+   * Thickness at the points: point_count values, NaN where unknown. May be NULL: unknown.
+   */
+  const float *thickness;
+  /**
+   * Label of each triangle: triangle_count values. May be NULL: no rows for labels.
+   */
+  const int64_t *labels;
+  /**
+   * Component of each triangle: triangle_count values. May be NULL: no rows for components.
+   */
+  const int64_t *components;
+} midsurface_triangle_mesh;
+
+/**
+ * A row of the table. Lengths are in the unit of the points.
+ */
+typedef struct midsurface_statistics_row {
+  /**
+   * What the row is about.
+   */
+  enum midsurface_scope scope;
+  /**
+   * Whether the row is about one label.
+   */
+  bool has_label;
+  /**
+   * The label; 0 without.
+   */
+  int64_t label;
+  /**
+   * The component; 0 where scope is another.
+   */
+  int64_t component;
+  /**
+   * Number of points in use.
+   */
+  size_t points;
+  /**
+   * Number of triangles.
+   */
+  size_t triangles;
+  /**
+   * Area of all triangles.
+   */
+  double area;
+  /**
+   * Points - edges + triangles: 2 for a sphere, 1 for a disk, 0 for a torus or an open tube.
+   */
+  int64_t euler_number;
+  /**
+   * Length of all edges with one triangle; 0 for a closed surface.
+   */
+  double boundary_length;
+  /**
+   * Number of connected rims; 0 for a closed surface.
+   */
+  size_t boundary_loops;
+  /**
+   * Mean thickness at the points; NaN where unknown.
+   */
+  double thickness_mean;
+  /**
+   * 5 %, 25 %, 50 % (the median), 75 % and 95 % of the points are at most this thick; NaN where
+   * unknown.
+   */
+  double thickness_quantiles[5];
+  /**
+   * Smallest shape factor of the triangles; 1 is equilateral.
+   */
+  double quality_smallest;
+  /**
+   * Mean of the shape factors.
+   */
+  double quality_mean;
+  /**
+   * Mean of the triangles' smallest angles, degrees.
+   */
+  double mean_smallest_angle;
+  /**
+   * Share of the angles under 30 degrees, 0 to 1.
+   */
+  double share_under_30;
+  /**
+   * Share of the angles over 120 degrees, 0 to 1.
+   */
+  double share_over_120;
+  /**
+   * Share of the points off the boundary that have five, six or seven edges, 0 to 1.
+   */
+  double valence_567;
+} midsurface_statistics_row;
 
 #ifdef __cplusplus
 extern "C" {
@@ -489,6 +634,34 @@ enum midsurface_status midsurface_ridge_field(const struct midsurface_volume *vo
                                               float *ridge,
                                               size_t length,
                                               struct midsurface_error **error);
+
+/**
+ * Measures a mesh: a row in total, then one for each label, in ascending order, followed by one
+ * for each of its components.
+ *
+ * mesh: as described there. Its indices are checked, and that coordinates are finite.
+ * out: where the new table goes.
+ * error: where an error goes; may be NULL.
+ */
+enum midsurface_status midsurface_measure(const struct midsurface_triangle_mesh *mesh,
+                                          struct midsurface_statistics **out,
+                                          struct midsurface_error **error);
+
+/**
+ * Number of rows of a table; 0 for NULL.
+ */
+size_t midsurface_statistics_length(const struct midsurface_statistics *statistics);
+
+/**
+ * The rows of a table, midsurface_statistics_length of them, valid until it is freed; NULL for
+ * NULL.
+ */
+const struct midsurface_statistics_row *midsurface_statistics_rows(const struct midsurface_statistics *statistics);
+
+/**
+ * Frees a table. NULL is ignored.
+ */
+void midsurface_statistics_free(struct midsurface_statistics *statistics);
 
 /**
  * Tells whether an image's z spacing is its number of slices times its x spacing: what readers

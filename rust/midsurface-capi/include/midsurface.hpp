@@ -43,6 +43,7 @@ struct Deleter
 using LabelList = std::unique_ptr<midsurface_label_list, Deleter<midsurface_label_list_free>>;
 using Polylines = std::unique_ptr<midsurface_polylines, Deleter<midsurface_polylines_free>>;
 using Mesh = std::unique_ptr<midsurface_mesh, Deleter<midsurface_mesh_free>>;
+using Statistics = std::unique_ptr<midsurface_statistics, Deleter<midsurface_statistics_free>>;
 
 /// What a run may be told; the default is right for most.
 struct Options
@@ -185,6 +186,16 @@ inline void RidgeField(const midsurface_volume& volume, float* distance, float* 
   const midsurface_status status =
     midsurface_ridge_field(&volume, run.Get(), distance, ridge, length, &error);
   run.Finish(status, error);
+}
+
+/// The table of a mesh's figures.
+inline std::vector<midsurface_statistics_row> Measure(const midsurface_triangle_mesh& mesh)
+{
+  midsurface_statistics* table = nullptr;
+  detail::Call(midsurface_measure, &mesh, &table);
+  const Statistics owner(table);
+  const midsurface_statistics_row* rows = midsurface_statistics_rows(table);
+  return { rows, rows + midsurface_statistics_length(table) };
 }
 
 /// Copies arrays into polylines.

@@ -7,6 +7,8 @@ use std::ptr;
 
 use midsurface::Error;
 
+use crate::handles::{look, release};
+
 /// How a call ended.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -111,26 +113,22 @@ fn panic_message(payload: &(dyn Any + Send)) -> &str {
 pub unsafe extern "C" fn midsurface_error_status(
     error: *const midsurface_error,
 ) -> midsurface_status {
-    guarded_value(midsurface_status::Panic, || {
-        // SAFETY: null, or an error of this library.
-        unsafe { error.as_ref() }.map_or(midsurface_status::Ok, |error| error.status)
-    })
+    // SAFETY: null, or an error of this library.
+    unsafe { look(error, midsurface_status::Ok, |error| error.status) }
 }
 
 /// The message of an error, UTF-8, valid until the error is freed; "" for NULL.
 #[no_mangle]
 pub unsafe extern "C" fn midsurface_error_message(error: *const midsurface_error) -> *const c_char {
-    guarded_value(c"".as_ptr(), || {
-        // SAFETY: null, or an error of this library.
-        unsafe { error.as_ref() }.map_or(c"".as_ptr(), |error| error.message.as_ptr())
-    })
+    // SAFETY: null, or an error of this library.
+    unsafe { look(error, c"".as_ptr(), |error| error.message.as_ptr()) }
 }
 
 /// Frees an error. NULL is ignored.
 #[no_mangle]
 pub unsafe extern "C" fn midsurface_error_free(error: *mut midsurface_error) {
     // SAFETY: null, or an error of this library that nobody uses any more.
-    guarded_value((), || unsafe { crate::arguments::free(error) });
+    unsafe { release(error) };
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! The labels of a volume.
 
-use crate::arguments::{address, free, Output};
-use crate::error::{guarded, guarded_value, midsurface_error, midsurface_status};
-use crate::options::{self, midsurface_options};
-use crate::volume::{self, midsurface_volume};
+use crate::arguments::address;
+use crate::error::{midsurface_error, midsurface_status};
+use crate::handles::{look, make_of_volume, release};
+use crate::options::midsurface_options;
+use crate::volume::midsurface_volume;
 
 /// The labels found in a volume. Freed with midsurface_label_list_free.
 #[derive(Debug)]
@@ -24,13 +25,9 @@ pub unsafe extern "C" fn midsurface_find_labels(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        guarded(error, || {
-            let out = Output::handle(out)?;
-            let (volume, _) = volume::read(volume)?;
-            let (options, mut callbacks) = options::read(options)?;
-            let labels = midsurface::find_labels(&volume, &options, &mut callbacks)?;
-            out.set_object(midsurface_label_list(labels));
-            Ok(())
+        make_of_volume(volume, options, out, error, |volume, options, callbacks| {
+            let labels = midsurface::find_labels(volume, options, callbacks)?;
+            Ok(midsurface_label_list(labels))
         })
     }
 }
@@ -38,10 +35,8 @@ pub unsafe extern "C" fn midsurface_find_labels(
 /// Number of labels in a list; 0 for NULL.
 #[no_mangle]
 pub unsafe extern "C" fn midsurface_label_list_length(list: *const midsurface_label_list) -> usize {
-    guarded_value(0, || {
-        // SAFETY: null, or a list of this library.
-        unsafe { list.as_ref() }.map_or(0, |list| list.0.len())
-    })
+    // SAFETY: null, or a list of this library.
+    unsafe { look(list, 0, |list| list.0.len()) }
 }
 
 /// The labels of a list, ascending, midsurface_label_list_length of them, valid until the list is
@@ -50,15 +45,13 @@ pub unsafe extern "C" fn midsurface_label_list_length(list: *const midsurface_la
 pub unsafe extern "C" fn midsurface_label_list_values(
     list: *const midsurface_label_list,
 ) -> *const i64 {
-    guarded_value(std::ptr::null(), || {
-        // SAFETY: null, or a list of this library.
-        unsafe { list.as_ref() }.map_or(std::ptr::null(), |list| address(&list.0))
-    })
+    // SAFETY: null, or a list of this library.
+    unsafe { look(list, std::ptr::null(), |list| address(&list.0)) }
 }
 
 /// Frees a list. NULL is ignored.
 #[no_mangle]
 pub unsafe extern "C" fn midsurface_label_list_free(list: *mut midsurface_label_list) {
     // SAFETY: null, or a list of this library that nobody uses any more.
-    guarded_value((), || unsafe { free(list) });
+    unsafe { release(list) };
 }

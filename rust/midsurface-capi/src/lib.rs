@@ -10,12 +10,14 @@
 
 mod arguments;
 mod error;
+mod handles;
 mod labels;
 mod mesh;
 mod options;
 mod polyline_arrays;
 mod polylines;
 mod ridge_field;
+mod statistics;
 mod volume;
 
 use std::ffi::c_char;

@@ -2,10 +2,11 @@
 
 use midsurface::Mesh;
 
-use crate::arguments::{address, collected, free, object, Output};
-use crate::error::{guarded, guarded_value, midsurface_error, midsurface_status};
-use crate::options::{self, midsurface_options};
-use crate::volume::{self, midsurface_volume};
+use crate::arguments::{address, collected, object, Output};
+use crate::error::{guarded, midsurface_error, midsurface_status};
+use crate::handles::{make_of_volume, release};
+use crate::options::midsurface_options;
+use crate::volume::midsurface_volume;
 
 /// A triangle mesh: a 2-manifold with boundary, consistently wound in each component. Freed with
 /// midsurface_mesh_free.
@@ -86,13 +87,8 @@ pub unsafe extern "C" fn midsurface_extract(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        guarded(error, || {
-            let out = Output::handle(out)?;
-            let (volume, _) = volume::read(volume)?;
-            let (options, mut callbacks) = options::read(options)?;
-            let mesh = midsurface::extract(&volume, &options, &mut callbacks)?;
-            out.set_object(midsurface_mesh::new(mesh)?);
-            Ok(())
+        make_of_volume(volume, options, out, error, |volume, options, callbacks| {
+            midsurface_mesh::new(midsurface::extract(volume, options, callbacks)?)
         })
     }
 }
@@ -153,5 +149,5 @@ pub unsafe extern "C" fn midsurface_mesh_check(
 #[no_mangle]
 pub unsafe extern "C" fn midsurface_mesh_free(mesh: *mut midsurface_mesh) {
     // SAFETY: null, or a mesh of this library that nobody uses any more.
-    guarded_value((), || unsafe { free(mesh) });
+    unsafe { release(mesh) };
 }

@@ -2,12 +2,13 @@
 
 use midsurface::{Polyline, Polylines};
 
-use crate::arguments::{address, collected, free, object, Output};
-use crate::error::{guarded, guarded_value, midsurface_error, midsurface_status};
+use crate::arguments::{address, collected, object, Output};
+use crate::error::{guarded, midsurface_error, midsurface_status};
+use crate::handles::{make_of_volume, release};
 use crate::mesh::midsurface_mesh;
 use crate::options::{self, midsurface_options};
 use crate::polyline_arrays::{self, midsurface_polyline_arrays};
-use crate::volume::{self, midsurface_volume};
+use crate::volume::midsurface_volume;
 
 /// Polylines in the slices of a volume. Freed with midsurface_polylines_free.
 #[derive(Debug)]
@@ -85,13 +86,8 @@ pub unsafe extern "C" fn midsurface_extract_polylines(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        guarded(error, || {
-            let out = Output::handle(out)?;
-            let (volume, _) = volume::read(volume)?;
-            let (options, mut callbacks) = options::read(options)?;
-            let polylines = midsurface::mid_polylines(&volume, &options, &mut callbacks)?;
-            out.set_object(midsurface_polylines::new(polylines)?);
-            Ok(())
+        make_of_volume(volume, options, out, error, |volume, options, callbacks| {
+            midsurface_polylines::new(midsurface::mid_polylines(volume, options, callbacks)?)
         })
     }
 }
@@ -144,7 +140,7 @@ pub unsafe extern "C" fn midsurface_polylines_arrays(
 #[no_mangle]
 pub unsafe extern "C" fn midsurface_polylines_free(polylines: *mut midsurface_polylines) {
     // SAFETY: null, or polylines of this library that nobody uses any more.
-    guarded_value((), || unsafe { free(polylines) });
+    unsafe { release(polylines) };
 }
 
 /// Joins the polylines of neighbouring slices to a mesh.

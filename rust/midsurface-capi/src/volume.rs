@@ -34,7 +34,8 @@ pub enum midsurface_scalar_type {
     Float64,
 }
 
-/// A label volume: an integer a voxel, 0 for background. Borrowed for a call, never copied.
+/// A label volume: an integer a voxel, 0 for background; or a map, such as a probability, of which
+/// everything at or above a threshold is label 1. Borrowed for a call, never copied.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct midsurface_volume {
@@ -56,6 +57,10 @@ pub struct midsurface_volume {
     /// Row-major 3x3 matrix, not singular, whose columns are the image's axes in world
     /// coordinates; 1 0 0 0 1 0 0 0 1 for most images.
     pub direction: [f64; 9],
+    /// Whether the scalars are a map, of any values, with a threshold. False for labels.
+    pub use_threshold: bool,
+    /// Where use_threshold: the least value of label 1, finite; else not looked at.
+    pub threshold: f64,
 }
 
 /// The addresses of an array's bytes.
@@ -137,7 +142,11 @@ unsafe fn borrow<'a, T: Label + 'a>(
     // SAFETY: as the header describes; the length has just been checked.
     let scalars: &[T] = unsafe { slice(volume.scalars.cast(), volume.length, "volume.scalars") }?;
     let addresses = addresses(scalars.as_ptr(), scalars.len());
-    Ok((Volume::new(scalars, grid)?, addresses))
+    let mut read = Volume::new(scalars, grid)?;
+    if volume.use_threshold {
+        read = read.with_threshold(volume.threshold)?;
+    }
+    Ok((read, addresses))
 }
 
 /// Tells whether an image's z spacing is its number of slices times its x spacing: what readers
@@ -191,6 +200,8 @@ mod tests {
             spacing: [1.0, 2.0, 3.0],
             origin: [10.0, 20.0, 30.0],
             direction: [1.0, 2.0, 3.0, 0.0, 1.0, 4.0, 0.0, 0.0, 1.0],
+            use_threshold: false,
+            threshold: 0.0,
         }
     }
 

@@ -23,8 +23,16 @@ pub enum Error {
     #[error("the image's {0} is not usable: it must be finite, and a direction matrix must not be singular")]
     Placement(&'static str),
     /// Floating point scalars that are not whole numbers.
-    #[error("the array holds {value} at voxel {voxel:?}, but labels are whole numbers: choose a segmentation, not an image or a probability map")]
+    #[error("the array holds {value} at voxel {voxel:?}, but labels are whole numbers: choose a segmentation; for a probability map, use a threshold")]
     NotALabel {
+        /// The offending value, printed.
+        value: String,
+        /// Its index along x, y, z, counted from the first voxel.
+        voxel: [usize; 3],
+    },
+    /// A whole number that is too large to be a label.
+    #[error("the array holds {value} at voxel {voxel:?}, which is too large for a label: labels go up to 2^63 - 1, in floating point up to 2^53; give the structure a smaller number")]
+    LabelTooLarge {
         /// The offending value, printed.
         value: String,
         /// Its index along x, y, z, counted from the first voxel.
@@ -50,12 +58,18 @@ pub enum Error {
         /// The labels present.
         present: String,
     },
+    /// A threshold must be a number.
+    #[error("the threshold {0} is not usable: give a finite number")]
+    Threshold(f64),
     /// The edge length is a length, or 0.
     #[error("the edge length {0} is not usable: give a positive length in the unit of the volume, or 0 to have it chosen")]
     EdgeLength(f64),
     /// Polylines that cannot be zipped.
     #[error("the polylines cannot be joined: {0}")]
     Polylines(String),
+    /// A triangle mesh that cannot be measured.
+    #[error("the triangles cannot be measured: {0}")]
+    Triangles(String),
     /// Memory was refused.
     #[error("not enough memory: {0} bytes more were refused")]
     OutOfMemory(usize),

@@ -55,6 +55,7 @@ mod settle;
 mod sheet;
 mod slice;
 mod slices;
+mod statistics;
 mod strip;
 mod terraces;
 mod thickness;
@@ -76,6 +77,7 @@ pub use grid::{Grid, Vec3};
 pub use mesh::{InvariantViolation, Mesh};
 pub use polylines::{Polyline, Polylines};
 pub use quality::Quality;
+pub use statistics::{statistics, Scope, Statistics, ThicknessFigures, TriangleMesh};
 pub use volume::{Label, Scalars, Volume};
 
 /// How the mid-surface is found.
@@ -259,6 +261,9 @@ fn find_ridge_surface(
             execution,
         )?;
         done += voxels;
+    }
+    if mesh.triangles.is_empty() && !all_parts.is_empty() {
+        execution.warning("there is no surface: the labels hold no sheet that could be followed");
     }
     warn_if_far(&mesh, execution);
     execution.finish()?;

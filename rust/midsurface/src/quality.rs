@@ -26,14 +26,31 @@ pub struct Quality {
 impl Mesh {
     /// Shape and valence of the triangles; all zero for an empty mesh.
     pub fn quality(&self) -> Quality {
-        let count = self.triangles.len() as f64;
-        let mut quality = Quality::default();
-        if self.triangles.is_empty() {
+        let corners = self
+            .triangles
+            .iter()
+            .map(|t| t.map(|p| self.points[p as usize].map(f64::from)));
+        Quality {
+            valence_567: valence_567(
+                &Edges::new(&self.triangles, self.points.len()),
+                self.points.len(),
+            ),
+            ..Quality::of_shapes(corners)
+        }
+    }
+}
+
+impl Quality {
+    /// The figures that need no neighbours, of triangles given by their corners.
+    pub(crate) fn of_shapes(triangles: impl ExactSizeIterator<Item = [Vec3; 3]>) -> Self {
+        let count = triangles.len() as f64;
+        let mut quality = Self::default();
+        if triangles.len() == 0 {
             return quality;
         }
         quality.smallest = f64::INFINITY;
-        for triangle in &self.triangles {
-            let (area, q, angles) = shape(triangle.map(|p| self.points[p as usize].map(f64::from)));
+        for triangle in triangles {
+            let (area, q, angles) = shape(triangle);
             quality.area += area;
             quality.smallest = quality.smallest.min(q);
             quality.mean += q / count;
@@ -45,27 +62,26 @@ impl Mesh {
             quality.share_under_30 += share(&|a| a < 30.0);
             quality.share_over_120 += share(&|a| a > 120.0);
         }
-        quality.valence_567 = self.valence_567();
         quality
     }
+}
 
-    fn valence_567(&self) -> f64 {
-        let edges = Edges::new(&self.triangles, self.points.len());
-        let mut valence = vec![0u32; self.points.len()];
-        let mut boundary = vec![false; self.points.len()];
-        for (a, b, group) in edges.groups() {
-            for p in [a, b] {
-                valence[p as usize] += 1;
-                boundary[p as usize] |= group.len() == 1;
-            }
+/// Share of the points off the boundary that have five to seven edges; all points must be in use.
+pub(crate) fn valence_567(edges: &Edges, points: usize) -> f64 {
+    let mut valence = vec![0u32; points];
+    let mut boundary = vec![false; points];
+    for (a, b, group) in edges.groups() {
+        for p in [a, b] {
+            valence[p as usize] += 1;
+            boundary[p as usize] |= group.len() == 1;
         }
-        let interior = boundary.iter().filter(|b| !**b).count();
-        let good = valence
-            .iter()
-            .zip(&boundary)
-            .filter(|(v, b)| !**b && (5..=7).contains(*v));
-        good.count() as f64 / interior.max(1) as f64
     }
+    let interior = boundary.iter().filter(|b| !**b).count();
+    let good = valence
+        .iter()
+        .zip(&boundary)
+        .filter(|(v, b)| !**b && (5..=7).contains(*v));
+    good.count() as f64 / interior.max(1) as f64
 }
 
 /// Area, Q and the angles in degrees.

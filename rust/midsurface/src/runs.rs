@@ -41,6 +41,25 @@ struct Slice {
     run_count: usize,
 }
 
+impl Slice {
+    fn add(&mut self, label: i64, [z, y]: [usize; 2], x: [usize; 2], keep: bool) -> Result<()> {
+        self.run_count += 1;
+        if keep {
+            self.runs
+                .try_reserve(1)
+                .map_err(|_| Error::OutOfMemory(std::mem::size_of::<Run>()))?;
+            self.runs.push(Run {
+                label,
+                z: z as u32,
+                y: y as u32,
+                start: x[0] as u32,
+                end: x[1] as u32,
+            });
+        }
+        Ok(())
+    }
+}
+
 /// The runs of the wanted labels, ordered by z, y, x, and all labels of the volume.
 pub(crate) struct Scan {
     pub runs: Vec<Run>,
@@ -59,20 +78,20 @@ pub(crate) fn scan(
         runs: Vec::new(),
         labels: BTreeSet::new(),
     };
-    let (mut run_count, mut slice_count) = (0, 0);
+    let mut run_count = 0;
+    // Judged by the whole volume, so that it does not matter where in it the noise is.
+    let most_runs = width * height * depth / RAW_RUN_LENGTH;
     execution.stream(
         &slices,
-        |&z| read_slice(&volume.scalars, z, &wanted),
+        |&z| read_slice(volume, z, &wanted),
         |slice| {
             let slice = slice?;
             scan.labels.extend(&slice.labels);
             run_count += slice.run_count;
-            slice_count += 1;
             if scan.labels.len() > MOST_LABELS {
                 return Err(Error::TooManyLabels { limit: MOST_LABELS });
             }
-            let voxels = width * height * slice_count;
-            if scan.labels.len() > RAW_LABELS && run_count > voxels / RAW_RUN_LENGTH {
+            if scan.labels.len() > RAW_LABELS && run_count > most_runs {
                 return Err(Error::NotASegmentation {
                     labels: scan.labels.len(),
                 });
@@ -88,43 +107,43 @@ pub(crate) fn scan(
     Ok(scan)
 }
 
-fn read_slice(
-    scalars: &Scalars,
-    z: usize,
-    wanted: &(impl Fn(i64) -> bool + Sync),
-) -> Result<Slice> {
+fn read_slice(volume: &Volume, z: usize, wanted: &(impl Fn(i64) -> bool + Sync)) -> Result<Slice> {
     macro_rules! typed {
         ($($variant:ident),*) => {
-            match scalars { $(Scalars::$variant(view) => read_typed(view, z, wanted)),* }
+            match &volume.scalars {
+                $(Scalars::$variant(view) => match volume.threshold {
+                    None => read_labels(view, z, wanted),
+                    Some(threshold) => read_above(view, z, threshold, wanted),
+                }),*
+            }
         };
     }
     typed!(I8, U8, I16, U16, I32, U32, I64, U64, F32, F64)
 }
 
-fn read_typed<T: Label>(
+fn read_labels<T: Label>(
     view: &ndarray::ArrayView3<T>,
     z: usize,
     wanted: &(impl Fn(i64) -> bool + Sync),
 ) -> Result<Slice> {
     let mut slice = Slice::default();
     let mut latest = (0, false);
-    for (y, row) in view
-        .index_axis(ndarray::Axis(0), z)
-        .outer_iter()
-        .enumerate()
-    {
-        let row = row.to_slice().unwrap_or(&[]);
-        let mut start = skip_background(row, 0);
+    let is_labelled = |v: T| v != T::default();
+    for (y, row) in rows(view, z) {
+        let mut start = skip_until(row, 0, is_labelled);
         while start < row.len() {
-            let label = row[start].label().ok_or_else(|| Error::NotALabel {
-                value: row[start].to_string(),
-                voxel: [start, y, z],
+            let label = row[start].label().ok_or_else(|| {
+                let (value, voxel) = (row[start].to_string(), [start, y, z]);
+                if row[start].is_whole() {
+                    Error::LabelTooLarge { value, voxel }
+                } else {
+                    Error::NotALabel { value, voxel }
+                }
             })?;
             let end = row[start..]
                 .iter()
                 .position(|v| *v != row[start])
                 .map_or(row.len(), |n| start + n);
-            slice.run_count += 1;
             if latest.0 != label {
                 latest = (label, wanted(label));
                 slice.labels.insert(label);
@@ -132,38 +151,64 @@ fn read_typed<T: Label>(
                     return Err(Error::TooManyLabels { limit: MOST_LABELS });
                 }
             }
-            if latest.1 {
-                let bytes = std::mem::size_of::<Run>();
-                slice
-                    .runs
-                    .try_reserve(1)
-                    .map_err(|_| Error::OutOfMemory(bytes))?;
-                slice.runs.push(Run {
-                    label,
-                    z: z as u32,
-                    y: y as u32,
-                    start: start as u32,
-                    end: end as u32,
-                });
-            }
-            start = skip_background(row, end);
+            slice.add(label, [z, y], [start, end], latest.1)?;
+            start = skip_until(row, end, is_labelled);
         }
     }
     Ok(slice)
 }
 
-/// The first index from `x` on that is not background. Most of a volume is background, so it is
+/// Voxels at or above the threshold are label 1.
+fn read_above<T: Label>(
+    view: &ndarray::ArrayView3<T>,
+    z: usize,
+    threshold: f64,
+    wanted: &(impl Fn(i64) -> bool + Sync),
+) -> Result<Slice> {
+    let mut slice = Slice::default();
+    let Some(least) = T::at_or_above(threshold) else {
+        return Ok(slice);
+    };
+    let is_wanted = wanted(1);
+    for (y, row) in rows(view, z) {
+        let mut start = skip_until(row, 0, |v| v >= least);
+        while start < row.len() {
+            let end = row[start..]
+                .iter()
+                .position(|&v| v < least || v.is_nan())
+                .map_or(row.len(), |n| start + n);
+            slice.labels.insert(1);
+            slice.add(1, [z, y], [start, end], is_wanted)?;
+            start = skip_until(row, end, |v| v >= least);
+        }
+    }
+    Ok(slice)
+}
+
+/// The rows of a slice, with their y.
+fn rows<'a, T>(
+    view: &ndarray::ArrayView3<'a, T>,
+    z: usize,
+) -> impl Iterator<Item = (usize, &'a [T])> {
+    let (_, height, width) = view.dim();
+    let size = height * width;
+    let slice = view
+        .to_slice()
+        .and_then(|all| all.get(z * size..(z + 1) * size));
+    slice.unwrap_or(&[]).chunks_exact(width.max(1)).enumerate()
+}
+
+/// The first index from `x` on whose value is labelled. Most of a volume is background, so it is
 /// looked at in blocks that the compiler turns into vector comparisons.
-fn skip_background<T: Label>(row: &[T], mut x: usize) -> usize {
+fn skip_until<T: Copy>(row: &[T], mut x: usize, is_labelled: impl Fn(T) -> bool) -> usize {
     const BLOCK: usize = 32;
-    let background = T::default();
     while let Some(block) = row.get(x..x + BLOCK) {
-        if block.iter().fold(false, |any, v| any | (*v != background)) {
+        if block.iter().fold(false, |any, &v| any | is_labelled(v)) {
             break;
         }
         x += BLOCK;
     }
-    while x < row.len() && row[x] == background {
+    while x < row.len() && !is_labelled(row[x]) {
         x += 1;
     }
     x

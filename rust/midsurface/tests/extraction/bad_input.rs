@@ -169,14 +169,7 @@ fn unusable_placement() {
 
 #[test]
 fn values_that_are_no_labels() {
-    for bad in [
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        0.5,
-        -1.25,
-        1e300,
-    ] {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.5, -1.25] {
         let mut labels = sheet(1.0);
         labels[2 + 20 * (3 + 20 * 4)] = bad;
         let expected = Error::NotALabel {
@@ -201,8 +194,67 @@ fn values_that_are_no_labels() {
             "{found:?}"
         );
     }
-    let huge = run(&sheet(u64::MAX), Grid::new([20; 3]), None);
-    assert!(matches!(huge, Err(Error::NotALabel { .. })), "{huge:?}");
+}
+
+#[test]
+fn whole_numbers_that_are_too_large_for_a_label() {
+    let large = [
+        run(&sheet(u64::MAX), Grid::new([20; 3]), None),
+        run(&sheet(i64::MAX as u64 + 1), Grid::new([20; 3]), None),
+        run(&sheet(1e300), Grid::new([20; 3]), None),
+        run(&sheet(-1e30f32), Grid::new([20; 3]), None),
+    ];
+    for found in large {
+        let Err(error @ Error::LabelTooLarge { .. }) = found else {
+            panic!("accepted");
+        };
+        assert!(error.to_string().contains("[0, 8, 0]"), "{error}");
+    }
+    for (label, found) in [
+        (
+            i64::MAX,
+            run(&sheet(i64::MAX as u64), Grid::new([20; 3]), None),
+        ),
+        (
+            1 << 53,
+            run(&sheet((1u64 << 53) as f64), Grid::new([20; 3]), None),
+        ),
+    ] {
+        assert_eq!(found.expect("a label").0.labels[0], label);
+    }
+}
+
+#[test]
+fn noise_is_refused_wherever_it_is_and_some_of_it_is_not() {
+    let noise: Vec<u8> = (0..8000u32)
+        .map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8)
+        .collect();
+    for first in [0, 4000] {
+        let mut labels = vec![0; 8000];
+        labels[first..first + 4000].copy_from_slice(&noise[..4000]);
+        let found = run(&labels, Grid::new([20; 3]), None);
+        assert!(
+            matches!(found, Err(Error::NotASegmentation { .. })),
+            "{first}"
+        );
+    }
+    // In the first slice only, and a sheet of its own label.
+    let mut labels = sheet(255);
+    labels[..160].copy_from_slice(&noise[..160]);
+    let mesh = run(&labels, Grid::new([20; 3]), Some(vec![255]))
+        .expect("a segmentation")
+        .0;
+    assert!(!mesh.triangles.is_empty());
+}
+
+#[test]
+fn a_threshold_that_is_no_number() {
+    let map = sheet(0.9);
+    for threshold in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let volume = Volume::new(&map, Grid::new([20; 3])).expect("usable");
+        let refusal = volume.with_threshold(threshold).expect_err("refused");
+        assert!(matches!(refusal, Error::Threshold(_)), "{refusal}");
+    }
 }
 
 #[test]

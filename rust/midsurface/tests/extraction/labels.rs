@@ -151,3 +151,35 @@ fn every_scalar_type_gives_the_same_mesh() {
     check(&phantom, &expected, f32::from);
     check(&phantom, &expected, f64::from);
 }
+
+/// The mesh of a map's voxels at or above a threshold.
+fn above<T: Label>(map: &[T], dimensions: [usize; 3], threshold: f64) -> Mesh {
+    let volume = Volume::new(map, Grid::new(dimensions)).expect("usable");
+    let volume = volume.with_threshold(threshold).expect("a number");
+    extract(&volume, &Options::default(), &mut Quiet::default()).expect("a mesh")
+}
+
+#[test]
+fn what_reaches_a_threshold_is_label_1() {
+    let dimensions = [24, 20, 12];
+    let labels = sheets(dimensions, &[(1, 6, 10)]);
+    let expected = extract_all(&labels, Grid::new(dimensions)).0;
+    assert!(!expected.triangles.is_empty());
+    // Values differ from voxel to voxel on both sides of the threshold, and some are no numbers.
+    let value = |i: usize, l: i64| match (l, i % 3) {
+        (1, r) => 0.3 + 0.2 * r as f64,
+        (_, 0) => f64::NAN,
+        (_, r) => 0.29 - r as f64,
+    };
+    let doubles: Vec<f64> = labels
+        .iter()
+        .enumerate()
+        .map(|(i, &l)| value(i, l))
+        .collect();
+    assert_eq!(above(&doubles, dimensions, 0.3), expected);
+    let singles: Vec<f32> = doubles.iter().map(|&v| v as f32).collect();
+    assert_eq!(above(&singles, dimensions, 0.2999), expected);
+    let bytes: Vec<u8> = doubles.iter().map(|&v| (100.0 * v) as u8).collect();
+    assert_eq!(above(&bytes, dimensions, 29.5), expected);
+    assert_eq!(above(&bytes, dimensions, 256.0), Mesh::default());
+}

@@ -16,5 +16,6 @@ mod polylines;
 mod random_polylines;
 mod random_volumes;
 mod real_data;
+mod statistics;
 mod thickness;
 mod topology;

@@ -1,0 +1,55 @@
+//! What functions that hand over, read and free objects have in common.
+
+use midsurface::{Options, Volume};
+
+use crate::arguments::{free, Output};
+use crate::error::{guarded, guarded_value, midsurface_error, midsurface_status};
+use crate::options::{self, midsurface_options, Callbacks};
+use crate::volume::{self, midsurface_volume};
+
+/// The body of a function that makes an object of a volume.
+///
+/// # Safety
+/// The pointers are null or as the header describes.
+pub(crate) unsafe fn make_of_volume<T>(
+    volume: *const midsurface_volume,
+    options: *const midsurface_options,
+    out: *mut *mut T,
+    error: *mut *mut midsurface_error,
+    work: impl FnOnce(&Volume, &Options, &mut Callbacks) -> Result<T, midsurface_error>,
+) -> midsurface_status {
+    // SAFETY: the same contract.
+    unsafe {
+        guarded(error, || {
+            let out = Output::handle(out)?;
+            let (volume, _) = volume::read(volume)?;
+            let (options, mut callbacks) = options::read(options)?;
+            out.set_object(work(&volume, &options, &mut callbacks)?);
+            Ok(())
+        })
+    }
+}
+
+/// The body of a function that tells something about an object; `otherwise` for null.
+///
+/// # Safety
+/// `handle` is null or a live object of this library.
+pub(crate) unsafe fn look<T, R: Copy>(
+    handle: *const T,
+    otherwise: R,
+    tell: impl FnOnce(&T) -> R,
+) -> R {
+    // SAFETY: the same contract.
+    guarded_value(otherwise, || {
+        unsafe { handle.as_ref() }.map_or(otherwise, tell)
+    })
+}
+
+/// The body of a function that frees an object.
+///
+/// # Safety
+/// `handle` is null or an object of this library that nobody uses any more.
+pub(crate) unsafe fn release<T>(handle: *mut T) {
+    // SAFETY: the same contract.
+    guarded_value((), || unsafe { free(handle) });
+}
