@@ -18,6 +18,15 @@ bool IsAborted(vtkAlgorithm* filter)
 #endif
 }
 
+void ClearAborted(vtkAlgorithm* filter)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  filter->SetAbortOutput(false);
+#else
+  static_cast<void>(filter);
+#endif
+}
+
 int Fail(vtkAlgorithm* filter, vtkDataObject* output, const char* message)
 {
   output->Initialize();
@@ -54,6 +63,8 @@ int FilterRun::Execute(vtkAlgorithm* filter, int threads, vtkDataObject* output,
       return Fail(filter, output, error.what());
     }
     output->Initialize();
+    // What counts as aborted is run again whenever anybody looks, each time with the same message.
+    ClearAborted(filter);
     vtkWarningWithObjectMacro(filter, << "The run was cancelled: the output is empty.");
     return 1;
   }

@@ -121,10 +121,11 @@ std::vector<LabelSelection::ScannedArray> LabelSelection::Scan(
     const ChosenArray chosen = find(image);
     if (const vtkDataArray* array = chosen.Labels())
     {
-      ScannedArray scanned{ array, chosen.Array->GetMTime(), false, {} };
+      ScannedArray scanned{ array, chosen.Array->GetMTime(), chosen.Threshold, false, {} };
       const auto known = std::find_if(
         this->Scanned.begin(), this->Scanned.end(), [&scanned](const ScannedArray& candidate) {
-          return candidate.Array == scanned.Array && candidate.MTime == scanned.MTime;
+          return candidate.Array == scanned.Array && candidate.MTime == scanned.MTime &&
+            candidate.Threshold == scanned.Threshold;
         });
       if (known != this->Scanned.end())
       {

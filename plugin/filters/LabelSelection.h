@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,7 @@ private:
   {
     const vtkDataArray* Array;
     vtkMTimeType MTime;
+    std::optional<double> Threshold;
     bool Readable;
     std::vector<int64_t> Labels;
   };

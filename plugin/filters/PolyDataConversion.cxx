@@ -1,5 +1,7 @@
 #include "PolyDataConversion.h"
 
+#include "ArrayValues.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -57,7 +59,8 @@ void CopyMesh(const midsurface_mesh_arrays& mesh, vtkPolyData* output)
   triangles->SetData(
     3, CopyArray<vtkTypeInt64Array>("Connectivity", mesh.triangles, 3 * mesh.triangle_count));
   output->SetPolys(triangles);
-  output->GetCellData()->AddArray(
+  // As the active scalars, since that is what ParaView colours by at first.
+  output->GetCellData()->SetScalars(
     CopyArray<vtkLongLongArray>("Label", mesh.labels, mesh.triangle_count));
   output->GetCellData()->AddArray(
     CopyArray<vtkLongLongArray>("Component", mesh.components, mesh.triangle_count));
@@ -98,12 +101,12 @@ PolylineInput::PolylineInput(vtkPolyData* input)
   }
   this->View.point_count = static_cast<size_t>(input->GetNumberOfPoints());
   this->View.points = static_cast<const double*>(
-    this->PointValues(input->GetPoints()->GetData(), VTK_DOUBLE, this->Points));
+    ValuesOfType(input->GetPoints()->GetData(), VTK_DOUBLE, this->Points));
   vtkDataArray* thickness = input->GetPointData()->GetArray("Thickness");
   if (thickness && thickness->GetNumberOfComponents() == 1)
   {
     this->View.thickness =
-      static_cast<const float*>(this->PointValues(thickness, VTK_FLOAT, this->Thickness));
+      static_cast<const float*>(ValuesOfType(thickness, VTK_FLOAT, this->Thickness));
   }
 
   this->Lines->ShallowCopy(input->GetLines());
@@ -130,34 +133,9 @@ PolylineInput::PolylineInput(vtkPolyData* input)
 }
 
 //------------------------------------------------------------------------------
-const void* PolylineInput::PointValues(
-  vtkDataArray* array, int type, vtkSmartPointer<vtkDataArray>& kept)
-{
-  kept = array;
-  if (array->GetDataType() != type || !array->HasStandardMemoryLayout())
-  {
-    kept.TakeReference(vtkDataArray::CreateDataArray(type));
-    kept->DeepCopy(array);
-  }
-  return kept->GetVoidPointer(0);
-}
-
-//------------------------------------------------------------------------------
 const int64_t* PolylineInput::LineValues(const char* name, vtkSmartPointer<vtkDataArray>& kept)
 {
-  vtkDataArray* array = this->Input->GetCellData()->GetArray(name);
-  if (!array || array->GetNumberOfComponents() != 1)
-  {
-    return nullptr;
-  }
-  kept = array;
-  const bool isInteger = array->GetDataType() == VTK_LONG_LONG ||
-    array->GetDataType() == VTK_LONG || array->GetDataType() == VTK_ID_TYPE;
-  if (!isInteger || array->GetDataTypeSize() != 8 || !array->HasStandardMemoryLayout())
-  {
-    kept.TakeReference(vtkDataArray::CreateDataArray(VTK_LONG_LONG));
-    kept->DeepCopy(array);
-  }
-  // Cell arrays begin with the vertex cells, which stand before the lines.
-  return static_cast<const int64_t*>(kept->GetVoidPointer(this->Input->GetNumberOfVerts()));
+  // Cell arrays begin with the vertices.
+  return WholeNumbers(
+    this->Input->GetCellData()->GetArray(name), this->Input->GetNumberOfVerts(), kept);
 }

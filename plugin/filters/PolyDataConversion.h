@@ -29,7 +29,6 @@ public:
   const midsurface_polyline_arrays& Arrays() const { return this->View; }
 
 private:
-  const void* PointValues(vtkDataArray* array, int type, vtkSmartPointer<vtkDataArray>& kept);
   const int64_t* LineValues(const char* name, vtkSmartPointer<vtkDataArray>& kept);
 
   vtkPolyData* Input;

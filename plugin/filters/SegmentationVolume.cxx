@@ -125,19 +125,19 @@ vtkDataArray* ChosenArray::Labels() const
 //------------------------------------------------------------------------------
 ChosenArray FindFirstArray(vtkImageData* image)
 {
-  ChosenArray first{ nullptr, vtkDataObject::FIELD_ASSOCIATION_POINTS, "" };
+  ChosenArray first{ nullptr, vtkDataObject::FIELD_ASSOCIATION_POINTS, "", {} };
   for (const int association :
     { vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataObject::FIELD_ASSOCIATION_CELLS })
   {
     vtkDataSetAttributes* fields = image->GetAttributes(association);
-    const ChosenArray active{ fields->GetScalars(), association, "" };
+    const ChosenArray active{ fields->GetScalars(), association, "", {} };
     if (active.Labels())
     {
       return active;
     }
     for (int index = 0; index < fields->GetNumberOfArrays(); ++index)
     {
-      const ChosenArray candidate{ fields->GetAbstractArray(index), association, "" };
+      const ChosenArray candidate{ fields->GetAbstractArray(index), association, "", {} };
       const bool isEarlier = !first.Array ||
         (first.Association == association &&
           Quoted(candidate.Array->GetName()) < Quoted(first.Array->GetName()));
@@ -173,6 +173,8 @@ SegmentationVolume::SegmentationVolume(vtkImageData* image, const ChosenArray& c
   }
   this->DescribeScalars();
   this->DescribeGrid(image->GetSpacing());
+  this->Volume.use_threshold = chosen.Threshold.has_value();
+  this->Volume.threshold = chosen.Threshold.value_or(0);
 }
 
 //------------------------------------------------------------------------------

@@ -6,6 +6,7 @@
 #include "vtkSmartPointer.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 
 class vtkAbstractArray;
@@ -21,6 +22,8 @@ struct ChosenArray
   int Association;
   /** The name it is asked for by; empty: by its role, as the active scalars. */
   std::string Name;
+  /** Where there is one, everything at or above it is label 1, and the values are no labels. */
+  std::optional<double> Threshold;
 
   /** The array where it can hold labels, else null. */
   vtkDataArray* Labels() const;

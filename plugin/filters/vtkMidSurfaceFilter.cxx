@@ -11,7 +11,9 @@
 vtkStandardNewMacro(vtkMidSurfaceFilter);
 
 static_assert(static_cast<int>(vtkMidSurfaceFilter::POLYLINE_ZIPPER) ==
-    static_cast<int>(MIDSURFACE_METHOD_POLYLINE_ZIPPER),
+      static_cast<int>(MIDSURFACE_METHOD_POLYLINE_ZIPPER) &&
+    static_cast<int>(vtkMidSurfaceFilter::RIDGE_SURFACE) ==
+      static_cast<int>(MIDSURFACE_METHOD_RIDGE_SURFACE),
   "Method is passed on as it is");
 
 //------------------------------------------------------------------------------

@@ -29,13 +29,15 @@ public:
 
   enum Methods
   {
-    POLYLINE_ZIPPER = 0
+    POLYLINE_ZIPPER = 0,
+    RIDGE_SURFACE = 1
   };
 
   ///@{
   /**
-   * How the mid-surface is found. POLYLINE_ZIPPER, the default: a line in every slice along z, the
-   * lines of neighbouring slices joined by triangles.
+   * How the mid-surface is found. RIDGE_SURFACE, the default: in the volume as a whole, whichever
+   * way the membrane lies. POLYLINE_ZIPPER: a line in every slice along z, the lines of
+   * neighbouring slices joined by triangles.
    */
   vtkSetMacro(Method, int);
   vtkGetMacro(Method, int);
@@ -62,7 +64,7 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) override;
 
-  int Method = POLYLINE_ZIPPER;
+  int Method = RIDGE_SURFACE;
   double EdgeLength = 0.0;
 
 private:

@@ -6,6 +6,7 @@
 #include "SegmentationVolume.h"
 
 #include "vtkCommand.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
@@ -41,9 +42,17 @@ public:
     vtkInformation* wanted = self->GetInputArrayInformation(0);
     const char* name =
       wanted->Has(vtkDataObject::FIELD_NAME()) ? wanted->Get(vtkDataObject::FIELD_NAME()) : "";
-    ChosenArray chosen{ nullptr, vtkDataObject::FIELD_ASSOCIATION_POINTS, name };
+    ChosenArray chosen{ nullptr, vtkDataObject::FIELD_ASSOCIATION_POINTS, name, {} };
     chosen.Array = self->GetInputAbstractArrayToProcess(0, image, chosen.Association);
-    return chosen.Array || *name ? chosen : FindFirstArray(image);
+    if (!chosen.Array && !*name)
+    {
+      chosen = FindFirstArray(image);
+    }
+    if (self->UseThreshold)
+    {
+      chosen.Threshold = self->Threshold;
+    }
+    return chosen;
   }
 
   void RequestChanged(vtkSegmentationFilter* self)
@@ -59,14 +68,23 @@ public:
    */
   void FindLabels(vtkSegmentationFilter* self)
   {
-    if (!this->Running)
+    if (this->RunDepth == 0)
     {
       this->Labels.Update([self](vtkImageData* image) { return Find(self, image); },
         self->GetInputDataObject(0, 0), self->Threads);
     }
   }
 
-  bool Running = false;
+  /** Whether the input is a collection of blocks, or a piece of which others have the rest. */
+  static bool IsInputSplit(vtkSegmentationFilter* self)
+  {
+    return vtkCompositeDataSet::SafeDownCast(self->GetInputDataObject(0, 0)) ||
+      self->GetOutputInformation(0)->Get(
+        vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  }
+
+  int RunDepth = 0;
+  bool InputIsSplit = false;
 };
 
 //------------------------------------------------------------------------------
@@ -92,6 +110,8 @@ void vtkSegmentationFilter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Threads: " << this->Threads << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";
+  os << indent << "UseThreshold: " << this->UseThreshold << "\n";
+  os << indent << "Threshold: " << this->Threshold << "\n";
   os << indent << "Labels:\n";
   this->GetLabels()->PrintSelf(os, indent.GetNextIndent());
   os << indent << "FoundLabels:\n";
@@ -138,14 +158,19 @@ void vtkSegmentationFilter::LabelsChanged()
 //------------------------------------------------------------------------------
 void vtkSegmentationFilter::RunStarts()
 {
-  this->Internals->FindLabels(this);
-  this->Internals->Running = true;
+  // A run on a collection holds one on each of its blocks.
+  if (this->Internals->RunDepth == 0)
+  {
+    this->Internals->FindLabels(this);
+    this->Internals->InputIsSplit = vtkInternals::IsInputSplit(this);
+  }
+  ++this->Internals->RunDepth;
 }
 
 //------------------------------------------------------------------------------
 void vtkSegmentationFilter::RunEnds()
 {
-  this->Internals->Running = false;
+  --this->Internals->RunDepth;
 }
 
 //------------------------------------------------------------------------------
@@ -214,10 +239,13 @@ int vtkSegmentationFilter::RequestData(
 {
   vtkImageData* input = vtkImageData::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
-  return FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
+  const int result = FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
     if (!input || input->GetNumberOfPoints() == 0)
     {
-      run.Warn("The input has no voxels: the output is empty.");
+      if (!this->Internals->InputIsSplit)
+      {
+        run.Warn("The input has no voxels: the output is empty.");
+      }
       return;
     }
     SegmentationVolume volume(input, vtkInternals::Find(this, input));
@@ -231,4 +259,12 @@ int vtkSegmentationFilter::RequestData(
     this->Extract(run, volume, output);
     output->GetFieldData()->PassData(input->GetFieldData());
   });
+  auto* image = vtkImageData::SafeDownCast(output);
+  if (image && input && image->GetNumberOfPoints() == 0)
+  {
+    // An image that lacks the extent that was asked for would be asked for again and again, each
+    // time with the same message.
+    image->CopyStructure(input);
+  }
+  return result;
 }

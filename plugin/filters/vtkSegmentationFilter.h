@@ -15,8 +15,8 @@
  * Under MPI (a vtkMultiProcessController with many processes) all processes update the filter
  * together, since they tell each other which labels they have.
  *
- * Bad input is reported by an error or warning of the filter, and the output is empty. So it is,
- * with a warning, after an abort.
+ * Bad input is reported by an error or warning of the filter, and the output is empty (an image
+ * has no arrays). So it is, with a warning, after an abort.
  */
 
 #ifndef vtkSegmentationFilter_h
@@ -92,6 +92,18 @@ public:
   vtkGetMacro(Spacing, int);
   ///@}
 
+  ///@{
+  /**
+   * Whether the array is no segmentation but a map of any values, such as the probabilities that a
+   * network gives: everything at or above Threshold is label 1. Default: off; 0.5.
+   */
+  vtkSetMacro(UseThreshold, bool);
+  vtkGetMacro(UseThreshold, bool);
+  vtkBooleanMacro(UseThreshold, bool);
+  vtkSetMacro(Threshold, double);
+  vtkGetMacro(Threshold, double);
+  ///@}
+
   vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
@@ -111,6 +123,8 @@ protected:
 
   int Threads = 0;
   int Spacing = AUTOMATIC;
+  bool UseThreshold = false;
+  double Threshold = 0.5;
 
 private:
   vtkSegmentationFilter(const vtkSegmentationFilter&) = delete;

@@ -50,6 +50,7 @@ class Progress(FilterTest):
             algorithm.Modified()
             output, messages = update(proxy)
             self.assertGreater(output.GetNumberOfCells(), 0)
+            self.assertGreater(output.GetAttributes(0).GetNumberOfArrays(), 0)
             self.assertEqual(messages.errors + messages.warnings, [])
 
 

@@ -1,7 +1,6 @@
 """What the filters give."""
 import numpy as np
 from paraview import simple
-from paraview.vtk import vtkMultiBlockDataSet
 from vtkmodules.vtkCommonCore import vtkStringArray
 
 from pipeline import (
@@ -35,7 +34,7 @@ class Mesh(FilterTest):
         self.assertEqual(len(mesh["lines"]), 0)
 
     def test_values(self):
-        mesh = self.extract(image(sheets()))
+        mesh = self.extract(image(sheets()), Method="Polyline zipper")
         # The sheets fill y = 3..6, 12..15 and 21..24: 4 thick, around 4.5, 13.5 and 22.5.
         triangles = mesh["polys"].reshape(-1, 3)
         for label, middle in ((1, 4.5), (2, 13.5), (3, 22.5)):
@@ -93,24 +92,6 @@ class Mesh(FilterTest):
             kept = output.GetFieldData().GetAbstractArray("note")
             self.assertEqual(kept.GetValue(0), "specimen 7")
 
-    def test_blocks_one_by_one(self):
-        blocks = vtkMultiBlockDataSet()
-        blocks.SetBlock(0, image(sheets(labels=(1, 2))))
-        blocks.SetBlock(1, image(sheets(labels=(2, 7))))
-        proxy = simple.MidSurface(Input=source(blocks))
-        self.assertEqual(list(proxy.Labels), ["1", "2", "7"])
-        for chosen, expected in (
-            (None, [{1, 2}, {2, 7}]),
-            (["2"], [{2}, {2}]),
-            (["7"], [set(), {7}]),
-        ):
-            if chosen:
-                proxy.Labels = chosen
-            output, messages = update(proxy)
-            self.assertEqual(messages.errors + messages.warnings, [])
-            found = [arrays(output.GetBlock(index)) for index in (0, 1)]
-            self.assertEqual([set(block.get("cell Label", [])) for block in found], expected)
-
 
 class Stages(FilterTest):
     def test_the_chain_gives_the_same_mesh(self):
@@ -119,10 +100,11 @@ class Stages(FilterTest):
             data.SetSpacing(0.7, 0.9, 1.3)
             data.SetOrigin(-11, 5, 3)
             chain = simple.PolylineZipper(Input=simple.MidPolylines(Input=source(data)))
+            whole = self.extract(data, Method="Polyline zipper")
             mesh, messages = update(chain)
             self.assertEqual(messages.errors + messages.warnings, [])
             self.assertGreater(mesh.GetNumberOfCells(), 0)
-            self.assert_same(self.extract(data), arrays(mesh))
+            self.assert_same(whole, arrays(mesh))
 
     def test_polylines(self):
         lines, messages = update(simple.MidPolylines(Input=source(image(tube()))))

@@ -12,11 +12,13 @@ class Properties(FilterTest):
         proxy = simple.MidSurface(Input=source(image(sheets())))
         self.assertEqual(list(proxy.Segmentation), ["POINTS", "labels"])
         self.assertEqual(list(proxy.Labels), ["1", "2", "3"])
-        self.assertEqual(proxy.Method, "Polyline zipper")
+        self.assertEqual(proxy.Method, "Ridge surface")
         self.assertEqual(proxy.Threads, 0)
         self.assertEqual(proxy.EdgeLength, 0)
         self.assertEqual(proxy.Spacing, "Automatic")
-        self.assertEqual(list(proxy.GetProperty("Method").GetAvailable()), ["Polyline zipper"])
+        self.assertEqual(
+            list(proxy.GetProperty("Method").GetAvailable()), ["Ridge surface", "Polyline zipper"]
+        )
 
     def test_stages_have_theirs(self):
         for create in (simple.RidgeField, simple.MidPolylines):

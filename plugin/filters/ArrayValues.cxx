@@ -1,0 +1,31 @@
+#include "ArrayValues.h"
+
+#include "vtkDataArray.h"
+
+//------------------------------------------------------------------------------
+const void* ValuesOfType(vtkDataArray* array, int type, vtkSmartPointer<vtkDataArray>& kept)
+{
+  kept = array;
+  if (array->GetDataType() != type || !array->HasStandardMemoryLayout())
+  {
+    kept.TakeReference(vtkDataArray::CreateDataArray(type));
+    kept->DeepCopy(array);
+  }
+  return kept->GetVoidPointer(0);
+}
+
+//------------------------------------------------------------------------------
+const int64_t* WholeNumbers(
+  vtkDataArray* array, vtkIdType first, vtkSmartPointer<vtkDataArray>& kept)
+{
+  if (!array || array->GetNumberOfComponents() != 1)
+  {
+    return nullptr;
+  }
+  const int type = array->GetDataType();
+  const bool is64Bit = array->GetDataTypeSize() == 8 &&
+    (type == VTK_LONG_LONG || type == VTK_LONG || type == VTK_ID_TYPE);
+  const auto* values =
+    static_cast<const int64_t*>(ValuesOfType(array, is64Bit ? type : VTK_LONG_LONG, kept));
+  return values + first;
+}

@@ -1,0 +1,24 @@
+#ifndef ArrayValues_h
+#define ArrayValues_h
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <cstdint>
+
+class vtkDataArray;
+
+/**
+ * The values of an array as the VTK type `type`: the array's own memory, or a copy where its type
+ * or layout is another one. `kept` owns them.
+ */
+const void* ValuesOfType(vtkDataArray* array, int type, vtkSmartPointer<vtkDataArray>& kept);
+
+/**
+ * The same for 64-bit integers, from tuple `first` on; null where there is no array, or one with
+ * several components.
+ */
+const int64_t* WholeNumbers(
+  vtkDataArray* array, vtkIdType first, vtkSmartPointer<vtkDataArray>& kept);
+
+#endif
