@@ -94,6 +94,7 @@ impl Mesh {
             &surface.triangles,
             &rough,
             &lines,
+            terraces::PASSBAND,
             execution,
         )?;
         let line_of = line_of_points(polylines);

@@ -38,6 +38,9 @@ const FARTHEST: f64 = 2.0;
 const SETTLINGS: usize = 4;
 /// Rings of voxels that sheets are extended by, at most.
 const RINGS: usize = 12;
+/// End of the passband of the low-pass that flattens terraces: shorter waves than for lines, since
+/// midway points have fewer terraces, and thick membranes have bends of their own.
+const PASSBAND: f64 = 0.08;
 /// Rounds of dropping triangles without area.
 const MENDINGS: usize = 4;
 /// Points handed to a worker at a time.
@@ -109,6 +112,7 @@ fn flatten(surface: &mut Surface, edge: f64, execution: &mut Execution) -> Resul
         &surface.triangles,
         &normals,
         &points,
+        PASSBAND,
         execution,
     )
 }

@@ -14,8 +14,9 @@ use crate::execution::Execution;
 use crate::grid::{along, dot, sub, unit, Vec3};
 use crate::halfedge::{ends, Edges, NONE};
 
-/// End of the passband among K's eigenvalues, 0 to 2: waves of about fourteen edges.
-const PASSBAND: f64 = 0.05;
+/// End of the passband among K's eigenvalues, 0 to 2, for lines in slices: waves of about fourteen
+/// edges.
+pub(crate) const PASSBAND: f64 = 0.05;
 /// Degree of the polynomial.
 const DEGREE: usize = 24;
 /// No point moves by more than this share of its line's edges: nearly half a voxel.
@@ -55,13 +56,20 @@ pub(crate) fn flatten_terraces(
     triangles: &[[u32; 3]],
     normals: &[Vec3],
     lines: &[LineOfPoint],
+    passband: f64,
     execution: &mut Execution,
 ) -> Result<()> {
     if triangles.is_empty() {
         return Ok(());
     }
     let neighbours = Neighbours::new(triangles, points, lines);
-    let moves = moves(points, normals, &neighbours, execution)?;
+    let moves = moves(
+        points,
+        normals,
+        &neighbours,
+        &sinc_weights(passband),
+        execution,
+    )?;
     let rings = neighbours.rings(lines);
     for (i, point) in points.iter_mut().enumerate() {
         let most = MOST * lines[i].edge * f64::from(rings[i]) / f64::from(RINGS);
@@ -87,6 +95,7 @@ fn moves(
     points: &[Vec3],
     normals: &[Vec3],
     neighbours: &Neighbours,
+    weights: &[f64],
     execution: &mut Execution,
 ) -> Result<Vec<f64>> {
     let smoothed = neighbours.smooth_normals(normals, execution)?;
@@ -100,8 +109,14 @@ fn moves(
     })?;
     // A polynomial f alone would shrink what is curved by its slope at 0. Tukey's twicing, which
     // filters what f took away and gives it back, has the response 2 f − f² and no slope there.
-    let mut moves = low_pass(zeros(points.len())?, Some(&heights), neighbours, execution)?;
-    let given_back = low_pass(moves.clone(), None, neighbours, execution)?;
+    let mut moves = low_pass(
+        zeros(points.len())?,
+        Some(&heights),
+        neighbours,
+        weights,
+        execution,
+    )?;
+    let given_back = low_pass(moves.clone(), None, neighbours, weights, execution)?;
     for (shift, back) in moves.iter_mut().zip(given_back) {
         *shift -= back;
     }
@@ -110,14 +125,14 @@ fn moves(
 
 /// The polynomial of the Laplacian, applied to a field by Chebyshev's recurrence: T₀ = x,
 /// T₁ = (1 − K/2) x, Tₙ₊₁ = 2 (1 − K/2) Tₙ − Tₙ₋₁. The field is relative to a surface over whose
-/// points their neighbours rise by `heights`.
+/// points their neighbours rise by `heights`; `weights` are the polynomial's.
 fn low_pass(
     mut before: Vec<f64>,
     heights: Option<&[f64]>,
     neighbours: &Neighbours,
+    weights: &[f64],
     execution: &mut Execution,
 ) -> Result<Vec<f64>> {
-    let weights = sinc_weights();
     let mut now: Vec<f64> = zeros(before.len())?;
     let step = |field: &[f64], p: usize| {
         let height = heights.map_or(0.0, |heights| heights[p]);
@@ -146,9 +161,9 @@ fn low_pass(
 
 /// Coefficients of the polynomial over Chebyshev's, under a Hamming window, summing to 1 so that
 /// flat stays flat.
-fn sinc_weights() -> Vec<f64> {
+fn sinc_weights(passband: f64) -> Vec<f64> {
     use std::f64::consts::PI;
-    let theta = (1.0 - 0.5 * PASSBAND).acos();
+    let theta = (1.0 - 0.5 * passband).acos();
     let mut weights: Vec<f64> = (0..=DEGREE)
         .map(|n| {
             let window = 0.54 + 0.46 * (n as f64 * PI / (DEGREE + 1) as f64).cos();
