@@ -73,25 +73,25 @@ fn every_line_of_the_table_is_tried() {
 
 must!(sphere_clean, "sphere", CLEAN);
 must!(sphere_noisy, "sphere", NOISY);
-falls_short!(sphere_2_thick_clean, "sphere 2 thick", CLEAN);
-falls_short!(sphere_2_thick_noisy, "sphere 2 thick", NOISY);
+must!(sphere_2_thick_clean, "sphere 2 thick", CLEAN);
+must!(sphere_2_thick_noisy, "sphere 2 thick", NOISY);
 must!(sphere_r_12_clean, "sphere R=12", CLEAN);
-falls_short!(sphere_r_12_noisy, "sphere R=12", NOISY);
+must!(sphere_r_12_noisy, "sphere R=12", NOISY);
 must!(sphere_12_to_14_thick_clean, "sphere 12 to 14 thick", CLEAN);
 must!(sphere_12_to_14_thick_noisy, "sphere 12 to 14 thick", NOISY);
 must!(torus_clean, "torus", CLEAN);
-must!(torus_noisy, "torus", NOISY);
-falls_short!(torus_2_thick_clean, "torus 2 thick", CLEAN);
-falls_short!(torus_2_thick_noisy, "torus 2 thick", NOISY);
-falls_short!(tube_clean, "tube", CLEAN);
-falls_short!(tube_noisy, "tube", NOISY);
+falls_short!(torus_noisy, "torus", NOISY);
+must!(torus_2_thick_clean, "torus 2 thick", CLEAN);
+must!(torus_2_thick_noisy, "torus 2 thick", NOISY);
+must!(tube_clean, "tube", CLEAN);
+must!(tube_noisy, "tube", NOISY);
 falls_short!(tube_2_thick_clean, "tube 2 thick", CLEAN);
 falls_short!(tube_2_thick_noisy, "tube 2 thick", NOISY);
-falls_short!(disk_clean, "disk", CLEAN);
-falls_short!(disk_noisy, "disk", NOISY);
-falls_short!(disk_with_a_hole_clean, "disk with a hole", CLEAN);
-falls_short!(disk_with_a_hole_noisy, "disk with a hole", NOISY);
-falls_short!(
+must!(disk_clean, "disk", CLEAN);
+must!(disk_noisy, "disk", NOISY);
+must!(disk_with_a_hole_clean, "disk with a hole", CLEAN);
+must!(disk_with_a_hole_noisy, "disk with a hole", NOISY);
+must!(
     disk_with_a_hole_2_thick_clean,
     "disk with a hole, 2 thick",
     CLEAN
@@ -101,26 +101,26 @@ falls_short!(
     "disk with a hole, 2 thick",
     NOISY
 );
-falls_short!(disk_in_slices_clean, "disk in slices", CLEAN);
-falls_short!(disk_in_slices_noisy, "disk in slices", NOISY);
+must!(disk_in_slices_clean, "disk in slices", CLEAN);
+must!(disk_in_slices_noisy, "disk in slices", NOISY);
 falls_short!(cap_clean, "cap", CLEAN);
 falls_short!(cap_noisy, "cap", NOISY);
 falls_short!(cap_2_thick_clean, "cap 2 thick", CLEAN);
 falls_short!(cap_2_thick_noisy, "cap 2 thick", NOISY);
-falls_short!(disk_3_to_12_thick_clean, "disk 3 to 12 thick", CLEAN);
-falls_short!(disk_3_to_12_thick_noisy, "disk 3 to 12 thick", NOISY);
+must!(disk_3_to_12_thick_clean, "disk 3 to 12 thick", CLEAN);
+must!(disk_3_to_12_thick_noisy, "disk 3 to 12 thick", NOISY);
 must!(plane_85_degrees_clean, "plane 85 degrees", CLEAN);
 must!(plane_85_degrees_noisy, "plane 85 degrees", NOISY);
 falls_short!(gyroid_clean, "gyroid", CLEAN);
 falls_short!(gyroid_noisy, "gyroid", NOISY);
-falls_short!(sphere_1_thick_clean, "sphere 1 thick", CLEAN);
+must!(sphere_1_thick_clean, "sphere 1 thick", CLEAN);
 falls_short!(sphere_1_thick_noisy, "sphere 1 thick", NOISY);
-falls_short!(
+must!(
     sphere_1_thick_corners_clean,
     "sphere 1 thick, corners",
     CLEAN
 );
-falls_short!(
+must!(
     sphere_1_thick_corners_noisy,
     "sphere 1 thick, corners",
     NOISY
@@ -135,7 +135,7 @@ falls_short!(
     "disk with a hole, 1 thick",
     NOISY
 );
-falls_short!(
+must!(
     disk_with_a_hole_1_thick_corners_clean,
     "disk with a hole, 1 thick, corners",
     CLEAN
@@ -150,12 +150,12 @@ must!(
     "nested spheres 4 apart",
     CLEAN
 );
-must!(
+falls_short!(
     nested_spheres_4_apart_noisy,
     "nested spheres 4 apart",
     NOISY
 );
-must!(
+falls_short!(
     nested_spheres_3_apart_clean,
     "nested spheres 3 apart",
     CLEAN
@@ -170,7 +170,7 @@ must!(
     "nested spheres 2 apart",
     CLEAN
 );
-falls_short!(
+must!(
     nested_spheres_2_apart_noisy,
     "nested spheres 2 apart",
     NOISY
@@ -180,14 +180,14 @@ must!(
     "nested spheres 1 apart",
     CLEAN
 );
-falls_short!(
+must!(
     nested_spheres_1_apart_noisy,
     "nested spheres 1 apart",
     NOISY
 );
 falls_short!(two_sheets_3_apart_clean, "two sheets 3 apart", CLEAN);
 falls_short!(two_sheets_3_apart_noisy, "two sheets 3 apart", NOISY);
-falls_short!(two_sheets_2_apart_clean, "two sheets 2 apart", CLEAN);
+must!(two_sheets_2_apart_clean, "two sheets 2 apart", CLEAN);
 falls_short!(two_sheets_2_apart_noisy, "two sheets 2 apart", NOISY);
 falls_short!(two_sheets_1_apart_clean, "two sheets 1 apart", CLEAN);
 falls_short!(two_sheets_1_apart_noisy, "two sheets 1 apart", NOISY);
@@ -201,7 +201,7 @@ falls_short!(
     "thick slab beside thin sheet",
     NOISY
 );
-must!(
+falls_short!(
     labels_touching_sheets_clean,
     "labels touching, sheets",
     CLEAN
@@ -211,12 +211,12 @@ falls_short!(
     "labels touching, sheets",
     NOISY
 );
-must!(
+falls_short!(
     labels_touching_shells_clean,
     "labels touching, shells",
     CLEAN
 );
-falls_short!(
+must!(
     labels_touching_shells_noisy,
     "labels touching, shells",
     NOISY
@@ -226,9 +226,9 @@ falls_short!(invagination_noisy, "invagination", NOISY);
 falls_short!(fold_clean, "fold", CLEAN);
 falls_short!(fold_noisy, "fold", NOISY);
 falls_short!(cristae_clean, "cristae", CLEAN);
-falls_short!(cristae_noisy, "cristae", NOISY);
+must!(cristae_noisy, "cristae", NOISY);
 must!(bent_tube_clean, "bent tube", CLEAN);
-falls_short!(bent_tube_noisy, "bent tube", NOISY);
+must!(bent_tube_noisy, "bent tube", NOISY);
 falls_short!(sheet_with_many_holes_clean, "sheet with many holes", CLEAN);
 falls_short!(sheet_with_many_holes_noisy, "sheet with many holes", NOISY);
 falls_short!(junction_t_clean, "junction T", CLEAN);
@@ -240,15 +240,15 @@ falls_short!(junction_y_narrow_noisy, "junction Y, narrow", NOISY);
 falls_short!(junction_x_clean, "junction X", CLEAN);
 falls_short!(junction_x_noisy, "junction X", NOISY);
 must!(sphere_slices_apart_clean, "sphere, slices apart", CLEAN);
-falls_short!(sphere_slices_apart_noisy, "sphere, slices apart", NOISY);
+must!(sphere_slices_apart_noisy, "sphere, slices apart", NOISY);
 must!(tube_slices_apart_clean, "tube, slices apart", CLEAN);
 falls_short!(tube_slices_apart_noisy, "tube, slices apart", NOISY);
-falls_short!(
+must!(
     disk_with_a_hole_slices_apart_clean,
     "disk with a hole, slices apart",
     CLEAN
 );
-falls_short!(
+must!(
     disk_with_a_hole_slices_apart_noisy,
     "disk with a hole, slices apart",
     NOISY
