@@ -80,7 +80,7 @@ class Spacing(Files):
 
     def test_the_stages_are_corrected_too(self):
         reader = self.reader(self.header((3, 3, 3), 1))
-        whole, _ = update(simple.MidSurface(Input=reader))
+        whole, _ = update(simple.MidSurface(Input=reader, Method="Polyline zipper"))
         polylines = simple.MidPolylines(Input=reader)
         _, messages = update(polylines)
         self.assertEqual(len(messages.warnings), 1)
