@@ -1,16 +1,32 @@
 //! Mid-surfaces of thin labelled slabs in segmented volumes.
 //!
 //! A cell membrane in a segmented tomogram is a slab of labelled voxels, 2 to 15 thick. This crate
-//! finds the surface midway between its two faces, as a triangle mesh, by the method of Boneš et
-//! al., "MidSurfer: A Parameter-Free Approach for Mid-Surface Extraction from Segmented Volumetric
-//! Data" (arXiv 2405.19339). Data flows one way, a stage is a file:
+//! finds the surface midway between its two faces, as a triangle mesh. Data flows one way, a stage
+//! is a file. Both methods begin with
 //!
 //! | stage | from → to | file |
 //! | --- | --- | --- |
 //! | scan | volume → runs of labelled voxels, the only pass over the input | `runs.rs` |
 //! | parts | runs → connected parts, each with its label and component | `components.rs` |
 //! | distance | parts → distance to the outside, in sparse bricks (`bricks.rs`) | `distance.rs` |
-//! | ridge field | distance → a smooth field whose crest is the mid-surface | `ridge.rs` |
+//!
+//! The ridge surface (`ridge_surface.rs`) goes on in all three directions at once:
+//!
+//! | stage | from → to | file |
+//! | --- | --- | --- |
+//! | scale | distance → how thick the label is here | `scale.rs` |
+//! | profile | mask → the mask smoothed as wide as it is thick | `profile.rs` |
+//! | sheets | profile → normal and offset of the sheet at every voxel near it | `crest.rs`, `extension.rs`, `settle.rs` |
+//! | contour | sheets → a surface through them, cut at the label's rims | `contour.rs`, `rim.rs`, `trim.rs` |
+//! | midway | surface → surface midway between both faces | `midway.rs` |
+//! | mesh | triangles → nearly equilateral ones, no terraces | `remesh`, `terraces.rs` |
+//!
+//! The polyline zipper is the method of Boneš et al., "MidSurfer: A Parameter-Free Approach for
+//! Mid-Surface Extraction from Segmented Volumetric Data" (arXiv 2405.19339):
+//!
+//! | stage | from → to | file |
+//! | --- | --- | --- |
+//! | ridge field | distance → a smooth field whose crest is the mid-surface | `ridge.rs`, `sheet.rs` |
 //! | polylines | ridge field → a line midway through every slice (`slice.rs`, `trace.rs`) | `polylines.rs` |
 //! | zipper | polylines → strips of triangles between slices (`strip.rs`) | `zipper.rs` |
 //! | mesh | triangles → 2-manifold (`manifold.rs`), better triangles (`flips.rs`), no terraces (`terraces.rs`), normals | `mesh.rs` |
