@@ -95,6 +95,12 @@ impl Grid {
         self.spacing.map(|s| (s / unit * 1e9).round() / 1e9)
     }
 
+    /// Whether the image's axes are a mirror image of the world's.
+    pub(crate) fn is_mirrored(&self) -> bool {
+        let d = &self.direction;
+        dot(d[0], cross(d[1], d[2])) < 0.0
+    }
+
     /// World direction of a unit vector of the work frame.
     pub(crate) fn direction_of(&self, v: Vec3) -> Vec3 {
         self.direction.map(|row| dot(row, v))

@@ -232,7 +232,10 @@ fn append(
         }
     })?;
     let first = mesh.points.len() as u32;
-    for triangle in &found.triangles {
+    let mirrored = grid.is_mirrored();
+    for &[a, b, c] in &found.triangles {
+        // Outward stays outward in a mirror only if the corners change places.
+        let triangle = if mirrored { [a, c, b] } else { [a, b, c] };
         let part = &batch.parts[found.source[triangle[0] as usize] as usize];
         mesh.triangles.push(triangle.map(|p| first + p));
         mesh.labels.push(part.label);
