@@ -5,9 +5,10 @@
 PLUGIN is the built MidSurface.so, FOLDER holds Fig13A.vti, Fig13B.vti, Fig7.vti, Fig11-OMM.vti and
 Fig11-IMM.vti. Each volume has a process of its own, so that its memory is its own, too.
 
-Seconds: wall time of the filter alone, its input already read, the median of three runs, each with
-a new filter. Contour: ParaView's own filter at 0.5, measured in the same way. Memory: the peak
-beyond what the process held before the first run, so beyond ParaView and the input.
+Both methods are measured. Seconds: wall time of the filter alone, its input already read, the
+median of three runs, each with a new filter. Contour: ParaView's own filter at 0.5, measured in the
+same way. Memory: the peak beyond what the process held before the first run, so beyond ParaView and
+the input.
 """
 import json
 import os
@@ -21,6 +22,7 @@ from datetime import date
 import numpy as np
 
 RUNS = 3
+METHODS = ("Ridge surface", "Polyline zipper")
 
 # arXiv 2405.19339, its table: seconds for lines and mesh, vertices, Q, smallest angle, share of all
 # vertices with 5 to 7 edges.
@@ -105,15 +107,17 @@ def figures(mesh):
     }
 
 
-def measure(plugin, path):
-    """Measures one volume in this process and prints the result as JSON."""
+def measure(plugin, path, method):
+    """Measures one method on one volume in this process and prints the result as JSON."""
     from paraview import simple
 
     simple.LoadPlugin(plugin, remote=False, ns=vars(simple))
     reader = simple.XMLImageDataReader(FileName=[path])
     reader.UpdatePipeline()
     array = reader.PointData.GetArray(0).Name
-    seconds, result, peak = timed(lambda: simple.MidSurface(Input=reader), figures)
+    seconds, result, peak = timed(
+        lambda: simple.MidSurface(Input=reader, Method=method), figures
+    )
 
     def contour():
         return simple.Contour(Input=reader, ContourBy=["POINTS", array], Isosurfaces=[0.5])
@@ -122,9 +126,9 @@ def measure(plugin, path):
     print(json.dumps({"seconds": seconds, "peak": peak, "contour": contour_seconds, **result}))
 
 
-def measure_apart(plugin, path):
-    """Measures one volume in a process of its own."""
-    command = ["pvpython", os.path.abspath(__file__), "--one", plugin, path]
+def measure_apart(plugin, path, method):
+    """Measures one method on one volume in a process of its own."""
+    command = ["pvpython", os.path.abspath(__file__), "--one", plugin, path, method]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(f"{done.stderr}filter.py: {path} could not be measured")
@@ -160,11 +164,12 @@ def main():
         if not os.path.exists(path):
             print_row(name, "not there", *[""] * 8)
             continue
-        m = measure_apart(plugin, path)
-        print_row(
-            name, "this filter", f"{m['seconds']:.2f}", f"{m['peak']:.0f}", m["points"], m["triangles"],
-            f"{m['quality']:.3f}", f"{m['angle']:.1f}", f"{m['valence']:.2f}", f"{m['contour']:.2f}",
-        )
+        for method in METHODS:
+            m = measure_apart(plugin, path, method)
+            print_row(
+                name, method, f"{m['seconds']:.2f}", f"{m['peak']:.0f}", m["points"], m["triangles"],
+                f"{m['quality']:.3f}", f"{m['angle']:.1f}", f"{m['valence']:.2f}", f"{m['contour']:.2f}",
+            )
         seconds, points, quality, angle, valence = PAPER[name]
         print_row("", "paper", seconds, "", points, "", f"{quality:.2f}", angle, f"{valence} *", "")
         seconds, peak, points, quality, angle, valence = PLUGIN[name]
