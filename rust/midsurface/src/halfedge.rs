@@ -1,6 +1,8 @@
 //! Half-edges of a triangle list, as arrays: half-edge 3 t + k goes from corner k of triangle t to
 //! the next corner.
 
+use crate::buckets::Buckets;
+
 /// No twin: a boundary.
 pub(crate) const NONE: u32 = u32::MAX;
 
@@ -20,46 +22,39 @@ pub(crate) fn next(half_edge: u32) -> u32 {
     }
 }
 
-/// The half-edges of every point, grouped: those that leave or enter point p with p the smaller
-/// end are `list[start[p] .. start[p + 1]]`, ordered by the larger end.
-pub(crate) struct Edges {
-    start: Vec<u32>,
-    list: Vec<(u32, u32)>,
+/// The half-edge before in the same triangle.
+pub(crate) fn previous(half_edge: u32) -> u32 {
+    if half_edge % 3 == 0 {
+        half_edge + 2
+    } else {
+        half_edge - 1
+    }
 }
+
+/// The half-edges that leave or enter each point p, with p the smaller end: the larger end and the
+/// half-edge, ordered by the larger end.
+pub(crate) struct Edges(Buckets<(u32, u32)>);
 
 impl Edges {
     /// Sorts the half-edges into buckets by their smaller end, without hashing.
     pub fn new(triangles: &[[u32; 3]], points: usize) -> Self {
-        let count = 3 * triangles.len() as u32;
-        let smaller = |e: u32| {
-            let (a, b) = ends(triangles, e);
-            a.min(b) as usize
-        };
-        let mut start = vec![0u32; points + 1];
-        for e in 0..count {
-            start[smaller(e) + 1] += 1;
-        }
+        let mut edges = Buckets::new(points, || {
+            (0..3 * triangles.len() as u32).map(|e| {
+                let (a, b) = ends(triangles, e);
+                (a.min(b), (a.max(b), e))
+            })
+        });
         for p in 0..points {
-            start[p + 1] += start[p];
+            edges.of_mut(p).sort_unstable();
         }
-        let mut at = start.clone();
-        let mut list = vec![(0, 0); count as usize];
-        for e in 0..count {
-            let (a, b) = ends(triangles, e);
-            let slot = &mut at[smaller(e)];
-            list[*slot as usize] = (a.max(b), e);
-            *slot += 1;
-        }
-        for p in 0..points {
-            list[start[p] as usize..start[p + 1] as usize].sort_unstable();
-        }
-        Self { start, list }
+        Self(edges)
     }
 
     /// All edges, each as its smaller end, its larger end and its half-edges.
     pub fn groups(&self) -> impl Iterator<Item = (u32, u32, &[(u32, u32)])> {
-        (0..self.start.len() - 1).flat_map(move |p| {
-            self.list[self.start[p] as usize..self.start[p + 1] as usize]
+        (0..self.0.count()).flat_map(move |p| {
+            self.0
+                .of(p)
                 .chunk_by(|a, b| a.0 == b.0)
                 .map(move |group| (p as u32, group[0].0, group))
         })
@@ -67,7 +62,7 @@ impl Edges {
 
     /// The other half-edge of each edge that exactly two triangles share, whatever their winding.
     pub fn twins(&self) -> Vec<u32> {
-        let mut twins = vec![NONE; self.list.len()];
+        let mut twins = vec![NONE; self.0.all().len()];
         for (_, _, group) in self.groups() {
             if let [(_, e), (_, f)] = *group {
                 twins[e as usize] = f;
@@ -78,37 +73,32 @@ impl Edges {
     }
 }
 
-/// The half-edges that leave each point: those of point p are `list[start[p] .. start[p + 1]]`.
-pub(crate) struct Fans {
-    start: Vec<u32>,
-    list: Vec<u32>,
-}
+/// The half-edges that leave each point.
+pub(crate) struct Fans(Buckets<u32>);
 
 impl Fans {
     /// Sorts the half-edges into buckets by their origin.
     pub fn new(triangles: &[[u32; 3]], points: usize) -> Self {
-        let mut start = vec![0u32; points + 1];
-        for &p in triangles.iter().flatten() {
-            start[p as usize] += 1;
-        }
-        let mut sum = 0;
-        for s in &mut start {
-            sum += *s;
-            *s = sum;
-        }
-        // Filled from the back, the ends of the buckets become their starts.
-        let mut list = vec![0; 3 * triangles.len()];
-        for e in (0..list.len() as u32).rev() {
-            let slot = &mut start[ends(triangles, e).0 as usize];
-            *slot -= 1;
-            list[*slot as usize] = e;
-        }
-        Self { start, list }
+        Self(Buckets::new(points, || {
+            (0..3 * triangles.len() as u32).map(|e| (ends(triangles, e).0, e))
+        }))
     }
 
     /// The half-edges that leave a point.
     pub fn of(&self, p: u32) -> &[u32] {
-        &self.list[self.start[p as usize] as usize..self.start[p as usize + 1] as usize]
+        self.0.of(p as usize)
+    }
+
+    /// The other corners of a point's triangles: most neighbours twice, those along a boundary once.
+    pub fn neighbours<'a>(
+        &'a self,
+        triangles: &'a [[u32; 3]],
+        p: u32,
+    ) -> impl Iterator<Item = u32> + 'a {
+        let corner = |e: u32| ends(triangles, e).0;
+        self.of(p)
+            .iter()
+            .flat_map(move |&e| [corner(next(e)), corner(previous(e))])
     }
 
     /// The opposite half-edge of a half-edge of a consistently wound manifold, or [`NONE`].

@@ -40,6 +40,7 @@
 
 mod block;
 mod bricks;
+mod buckets;
 mod centre;
 mod components;
 mod contour;

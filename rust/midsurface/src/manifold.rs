@@ -7,7 +7,7 @@
 
 use crate::error::{zeros, Result};
 use crate::grid::{along, sub, Vec3};
-use crate::halfedge::{ends, next, Edges, MOST_AROUND, NONE};
+use crate::halfedge::{ends, next, previous, Edges, MOST_AROUND, NONE};
 
 /// How far a copy of a point moves towards its own triangles.
 const APART: f64 = 0.01;
@@ -136,12 +136,11 @@ fn split_points(surface: &mut Surface, twins: &[u32]) {
 
 /// The corners around the point at `corner` that are joined through shared edges.
 fn fan(corner: u32, twins: &[u32]) -> Vec<u32> {
-    let before = |e: u32| next(next(e));
     let mut fan = vec![corner];
     let mut at = corner;
     // Leave through the edge that enters the point, until a boundary or the start.
     for _ in 0..MOST_AROUND {
-        at = twins[before(at) as usize];
+        at = twins[previous(at) as usize];
         if at == NONE || at == corner {
             break;
         }

@@ -10,6 +10,7 @@ use crate::bricks::Batch;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, Vec3};
+use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::Surface;
 use crate::mesh::normals;
@@ -22,6 +23,8 @@ const MOST: f64 = 2.0;
 /// Rounds of averaging over neighbouring points; their number is the variance in about two squared
 /// edges of the contour.
 const ROUNDS: usize = 10;
+/// Times that points are moved, with normals of their own each time.
+const MOVES: usize = 2;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 
@@ -45,6 +48,19 @@ pub(crate) struct Label<'a> {
 pub(crate) fn move_midway(
     label: &Label,
     surface: &mut Surface,
+    execution: &mut Execution,
+) -> Result<()> {
+    let fans = Fans::new(&surface.triangles, surface.points.len());
+    for _ in 0..MOVES {
+        move_once(label, surface, &fans, execution)?;
+    }
+    Ok(())
+}
+
+fn move_once(
+    label: &Label,
+    surface: &mut Surface,
+    fans: &Fans,
     execution: &mut Execution,
 ) -> Result<()> {
     let Label {
@@ -76,12 +92,11 @@ pub(crate) fn move_midway(
             }
         }
     })?;
-    let neighbours = Neighbours::new(&surface.triangles, surface.points.len());
     let mut averaged: Vec<Seen> = zeros(seen.len())?;
     for _ in 0..ROUNDS {
         execution.fill(&mut averaged, PIECE, |piece, out| {
             for (i, out) in out.iter_mut().enumerate() {
-                *out = neighbours.mean(&seen, PIECE * piece + i);
+                *out = mean(&seen, fans, &surface.triangles, PIECE * piece + i);
             }
         })?;
         std::mem::swap(&mut averaged, &mut seen);
@@ -112,43 +127,14 @@ fn within_volume(p: Vec3, n: Vec3, off: f64, last: Vec3) -> Vec3 {
     std::array::from_fn(|a| moved[a].clamp(0.0, last[a]))
 }
 
-/// The points that share an edge with each point: those of point p are
-/// `list[start[p] .. start[p + 1]]`, those within the surface twice.
-struct Neighbours {
-    start: Vec<u32>,
-    list: Vec<u32>,
-}
-
-impl Neighbours {
-    fn new(triangles: &[[u32; 3]], points: usize) -> Self {
-        let mut start = vec![0u32; points + 1];
-        for p in triangles.iter().flatten() {
-            start[*p as usize + 1] += 2;
-        }
-        for p in 0..points {
-            start[p + 1] += start[p];
-        }
-        let mut at = start.clone();
-        let mut list = vec![0; 6 * triangles.len()];
-        for t in triangles {
-            for k in 0..3 {
-                let slot = &mut at[t[k] as usize];
-                list[*slot as usize] = t[(k + 1) % 3];
-                list[*slot as usize + 1] = t[(k + 2) % 3];
-                *slot += 2;
-            }
-        }
-        Self { start, list }
+/// Mean over a point and its neighbours; those within the surface count twice, as does the point.
+fn mean(seen: &[Seen], fans: &Fans, triangles: &[[u32; 3]], p: usize) -> Seen {
+    let mut sum = seen[p].map(|v| 2.0 * v);
+    let mut count = 2.0;
+    for q in fans.neighbours(triangles, p as u32) {
+        sum[0] += seen[q as usize][0];
+        sum[1] += seen[q as usize][1];
+        count += 1.0;
     }
-
-    /// Mean over a point and its neighbours.
-    fn mean(&self, seen: &[Seen], p: usize) -> Seen {
-        let own = &self.list[self.start[p] as usize..self.start[p + 1] as usize];
-        let mut sum = seen[p].map(|v| 2.0 * v);
-        for &q in own {
-            sum[0] += seen[q as usize][0];
-            sum[1] += seen[q as usize][1];
-        }
-        sum.map(|v| v / (own.len() + 2) as f32)
-    }
+    sum.map(|v| v / count)
 }

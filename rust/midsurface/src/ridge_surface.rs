@@ -28,8 +28,6 @@ use crate::trim::{drop_scraps, trim};
 
 /// Passes over a batch, for its progress.
 const PASSES: usize = 200;
-/// Times that points are moved midway, with normals of their own each time.
-const MIDWAY: usize = 2;
 /// The edge length by default, in units of the finest spacing (the paper's step).
 const EDGE_LENGTH: f64 = std::f64::consts::SQRT_2;
 /// How far offsets are followed, in the coarsest spacing.
@@ -71,9 +69,7 @@ pub(crate) fn ridge_surface(
         fraction: &fraction,
         h,
     };
-    for _ in 0..MIDWAY {
-        move_midway(&label, &mut surface, execution)?;
-    }
+    move_midway(&label, &mut surface, execution)?;
     turn_outward(&surface.points, &mut surface.triangles);
     execution.stage("Remeshing", at(0.7), at(1.0), PASSES)?;
     let wanted = match edge_length {

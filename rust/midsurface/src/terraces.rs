@@ -9,7 +9,8 @@
 //! lie far apart; on a boundary it follows the boundary. A lower passband would remove longer
 //! terraces, too, but takes the bends of real membranes for such.
 
-use crate::error::{zeros, Result};
+use crate::buckets::Buckets;
+use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, sub, unit, Vec3};
 use crate::halfedge::{ends, Edges, NONE};
@@ -40,11 +41,10 @@ pub(crate) struct LineOfPoint {
     pub across: Vec3,
 }
 
-/// Neighbours of every point: those of point p, with their weights in K, are at
-/// `start[p] .. start[p + 1]`. A point on a boundary has neighbours along the boundary only.
+/// Neighbours of every point, with their weights in K in the same order. A point on a boundary has
+/// neighbours along the boundary only.
 struct Neighbours {
-    start: Vec<u32>,
-    list: Vec<u32>,
+    list: Buckets<u32>,
     weights: Vec<f32>,
     boundary: Vec<bool>,
 }
@@ -62,7 +62,7 @@ pub(crate) fn flatten_terraces(
     if triangles.is_empty() {
         return Ok(());
     }
-    let neighbours = Neighbours::new(triangles, points, lines);
+    let neighbours = Neighbours::new(triangles, points, lines)?;
     let moves = moves(
         points,
         normals,
@@ -180,7 +180,7 @@ fn sinc_weights(passband: f64) -> Vec<f64> {
 }
 
 impl Neighbours {
-    fn new(triangles: &[[u32; 3]], points: &[Vec3], lines: &[LineOfPoint]) -> Self {
+    fn new(triangles: &[[u32; 3]], points: &[Vec3], lines: &[LineOfPoint]) -> Result<Self> {
         let twins = Edges::new(triangles, points.len()).twins();
         let half_edges = || (0..twins.len()).map(|e| (ends(triangles, e as u32), twins[e] == NONE));
         let mut boundary = vec![false; points.len()];
@@ -196,39 +196,27 @@ impl Neighbours {
                 there.into_iter().chain(outer.then_some((b, a)))
             })
         };
-        let mut start = vec![0u32; points.len() + 1];
-        for (a, _) in links() {
-            start[a as usize + 1] += 1;
-        }
-        for p in 0..points.len() {
-            start[p + 1] += start[p];
-        }
-        let mut at = start.clone();
-        let mut list = vec![0; start[points.len()] as usize];
-        let mut weights = vec![0.0; list.len()];
-        for (a, b) in links() {
-            let place = &mut at[a as usize];
-            let count = start[a as usize + 1] - start[a as usize];
-            let d = sub(points[b as usize], points[a as usize]);
+        let list = Buckets::new(points.len(), links);
+        let mut weights: Vec<f32> = reserved(list.all().len())?;
+        for a in 0..points.len() {
             // Along a line a bend shows twice as much as on average over all directions.
-            let share = if is_inner(a) { 1.0 } else { 0.5 } / f64::from(count);
-            list[*place as usize] = b;
-            weights[*place as usize] =
-                (share * (lines[a as usize].edge.powi(2) / dot(d, d)).min(1.0)) as f32;
-            *place += 1;
+            let share = if boundary[a] { 0.5 } else { 1.0 } / list.of(a).len() as f64;
+            weights.extend(list.of(a).iter().map(|&b| {
+                let d = sub(points[b as usize], points[a]);
+                (share * (lines[a].edge.powi(2) / dot(d, d)).min(1.0)) as f32
+            }));
         }
-        Self {
-            start,
+        Ok(Self {
             list,
             weights,
             boundary,
-        }
+        })
     }
 
     /// The neighbours of point p with their weights.
     fn of(&self, p: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let own = self.start[p] as usize..self.start[p + 1] as usize;
-        let list = self.list[own.clone()].iter().zip(&self.weights[own]);
+        let weights = &self.weights[self.list.range(p)];
+        let list = self.list.of(p).iter().zip(weights);
         list.map(|(&q, &w)| (q as usize, f64::from(w)))
     }
 

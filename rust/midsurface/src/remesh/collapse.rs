@@ -7,9 +7,7 @@
 use super::patch::{Kind, Patch};
 use super::shape::{facing, sine_of_smallest_angle};
 use crate::grid::squared_distance;
-use crate::halfedge::{next, NONE};
-
-use super::patch::previous;
+use crate::halfedge::{next, previous, NONE};
 
 /// An edge this much shorter than wanted is collapsed (Botsch and Kobbelt 2004).
 const SHORT: f64 = 4.0 / 5.0;

@@ -7,7 +7,7 @@
 
 use super::reference::Reference;
 use crate::grid::Vec3;
-use crate::halfedge::{next, NONE};
+use crate::halfedge::{next, previous, NONE};
 
 /// Where a point may go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,15 +42,6 @@ impl Vertex {
     }
     pub fn is_boundary(&self) -> bool {
         self.kind != Kind::Interior
-    }
-}
-
-/// The half-edge before in the same triangle.
-pub(super) fn previous(half_edge: u32) -> u32 {
-    if half_edge % 3 == 0 {
-        half_edge + 2
-    } else {
-        half_edge - 1
     }
 }
 

@@ -12,7 +12,7 @@ use super::sizing;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, cross, dot, sub, unit, Vec3};
-use crate::halfedge::{ends, Fans, NONE};
+use crate::halfedge::{ends, previous, Fans, NONE};
 
 /// Items handed to a worker at a time.
 const PIECE: usize = 4096;
@@ -225,7 +225,7 @@ fn point_normal(points: &[Vec3], triangles: &[[u32; 3]], leaving: &[u32]) -> [f3
     let mut sum = [0.0; 3];
     for &e in leaving {
         let (p, q) = ends(triangles, e);
-        let r = ends(triangles, super::patch::previous(e)).0;
+        let r = ends(triangles, previous(e)).0;
         let [p, q, r] = [p, q, r].map(|p| points[p as usize]);
         let (u, v) = (sub(q, p), sub(r, p));
         let squares = dot(u, u) * dot(v, v);

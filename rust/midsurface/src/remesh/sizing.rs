@@ -13,8 +13,7 @@ use super::reference::Reference;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, length, sub, unit, Vec3};
-use crate::halfedge::{ends, next, Fans};
-use crate::remesh::patch::previous;
+use crate::halfedge::{ends, Fans};
 
 /// How far a flat triangle may be from the surface, in units of the finest spacing.
 const CHORD: f64 = 0.1;
@@ -75,7 +74,7 @@ fn smooth_normals(
             for (i, normal) in out.iter_mut().enumerate() {
                 let p = (piece * PIECE + i) as u32;
                 let mut sum = now[p as usize].map(f64::from);
-                for q in neighbours(reference, fans, p) {
+                for q in fans.neighbours(reference.triangles, p) {
                     sum = along(sum, 0.5, now[q as usize].map(f64::from));
                 }
                 *normal = unit(sum).map(|v| v as f32);
@@ -86,23 +85,11 @@ fn smooth_normals(
     Ok(now)
 }
 
-/// The other corners of a point's triangles: most neighbours twice, those along a boundary once.
-fn neighbours<'a>(
-    reference: &'a Reference,
-    fans: &'a Fans,
-    p: u32,
-) -> impl Iterator<Item = u32> + 'a {
-    let corner = |e: u32| ends(reference.triangles, e).0;
-    fans.of(p)
-        .iter()
-        .flat_map(move |&e| [corner(next(e)), corner(previous(e))])
-}
-
 /// The change of the normals around a point over the way it takes: 1 / R on a sphere.
 fn curvature(reference: &Reference, fans: &Fans, normals: &[[f32; 3]], p: u32) -> f64 {
     let normal = |p: u32| -> Vec3 { normals[p as usize].map(f64::from) };
     let (mut turned, mut way) = (0.0, 0.0);
-    for q in neighbours(reference, fans, p) {
+    for q in fans.neighbours(reference.triangles, p) {
         let turn = sub(normal(q), normal(p));
         let step = sub(reference.points[q as usize], reference.points[p as usize]);
         turned += dot(turn, turn);
@@ -126,7 +113,7 @@ fn grade(reference: &Reference, fans: &Fans, edge_length: f32, sizes: &mut [f32]
         if bits != sizes[p as usize].to_bits() {
             continue;
         }
-        for q in neighbours(reference, fans, p) {
+        for q in fans.neighbours(reference.triangles, p) {
             let way = length(sub(
                 reference.points[q as usize],
                 reference.points[p as usize],
