@@ -22,6 +22,7 @@ use crate::bricks::{Batch, Directory, EDGE, LAYER};
 use crate::error::{reserved, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, length, sub, unit, Vec3};
+use crate::manifold::Surface;
 use crate::sheet::Sheet;
 
 /// Voxels along a brick and one on either side.
@@ -36,40 +37,31 @@ const SEAM: f64 = 1.0;
 /// No corner in a crossed edge's cube.
 const NO_CORNER: u8 = 15;
 
-/// The surface while it is made: points in work units.
-#[derive(Default)]
-pub(crate) struct Contour {
-    pub points: Vec<Vec3>,
-    pub triangles: Vec<[u32; 3]>,
-    /// Part of each point, as an index into the batch's parts.
-    pub part: Vec<u32>,
-}
-
-/// The surfaces of all parts of a batch. `h` is the work spacing.
+/// The surfaces of all parts of a batch, points in work units; a point's source is its part, as an
+/// index into the batch's. `h` is the work spacing.
 pub(crate) fn contour(
     batch: &Batch,
     sheets: &[Sheet],
     h: Vec3,
     execution: &mut Execution,
-) -> Result<Contour> {
+) -> Result<Surface> {
     let bricks: Vec<usize> = (0..batch.part_of_brick.len()).collect();
     let mut cells: Vec<Cells> = reserved(bricks.len())?;
-    let mut contour = Contour::default();
+    let mut surface = Surface::default();
     execution.stream(
         &bricks,
         |&brick| Cells::new(&Block::gather(batch, brick, sheets, h)),
         |(mut own, points)| {
-            own.first = contour.points.len() as u32;
-            contour.points.extend(points);
-            contour
-                .part
-                .resize(contour.points.len(), batch.part_of_brick[cells.len()]);
+            own.first = surface.points.len() as u32;
+            surface.points.extend(points);
+            let part = batch.part_of_brick[cells.len()];
+            surface.source.resize(surface.points.len(), part);
             cells.push(own);
             Ok(())
         },
     )?;
-    let points = &contour.points;
-    let triangles = &mut contour.triangles;
+    let points = &surface.points;
+    let triangles = &mut surface.triangles;
     execution.stream(
         &bricks,
         |&brick| quadrilaterals(batch, &cells, brick, points),
@@ -78,7 +70,7 @@ pub(crate) fn contour(
             Ok(())
         },
     )?;
-    Ok(contour)
+    Ok(surface)
 }
 
 /// The cubes of one brick that the surface passes, in the order of their keys.

@@ -12,7 +12,9 @@ use crate::halfedge::{ends, next, previous, Edges, MOST_AROUND, NONE};
 /// How far a copy of a point moves towards its own triangles.
 const APART: f64 = 0.01;
 
-/// A triangle list under repair. `source` is the point that each point is a copy of.
+/// A triangle list under repair. `source` is what each point stems from, which its copies inherit:
+/// a point of a line, or a part.
+#[derive(Default)]
 pub(crate) struct Surface {
     pub points: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,

@@ -36,15 +36,13 @@ pub(crate) struct Label<'a> {
     pub batch: &'a Batch<'a>,
     /// Distance to the outside at the voxels, work units.
     pub distance: &'a [f32],
-    /// Part of each point's source.
-    pub part: &'a [u32],
     /// Sheet fraction at each point.
     pub fraction: &'a [f64],
     /// The work spacing.
     pub h: Vec3,
 }
 
-/// Moves the points of `surface` midway.
+/// Moves the points of `surface`, each with its part as source, midway.
 pub(crate) fn move_midway(
     label: &Label,
     surface: &mut Surface,
@@ -66,7 +64,6 @@ fn move_once(
     let Label {
         batch,
         distance,
-        part,
         fraction,
         h,
     } = *label;
@@ -80,7 +77,7 @@ fn move_once(
             if fraction[p] < INSIDE {
                 continue;
             }
-            let directory = &batch.directories[part[source[p] as usize] as usize];
+            let directory = &batch.directories[source[p] as usize];
             let sampler = Sampler {
                 directory,
                 field: distance,

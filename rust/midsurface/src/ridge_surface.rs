@@ -59,13 +59,12 @@ pub(crate) fn ridge_surface(
     execution.stage("Finding sheets", at(0.0), at(0.5), 60)?;
     let batch = &Batch::new(parts, grid.dimensions)?;
     let distance = distance(batch, h, execution)?;
-    let (mut surface, part, fraction) = cut_surface(batch, &distance, h, execution)?;
+    let (mut surface, fraction) = cut_surface(batch, &distance, h, execution)?;
     execution.stage("Moving midway", at(0.5), at(0.7), 30)?;
-    let fraction = values(batch, &surface, &part, &fraction, h, execution)?;
+    let fraction = values(batch, &surface, &fraction, h, execution)?;
     let label = Label {
         batch,
         distance: &distance,
-        part: &part,
         fraction: &fraction,
         h,
     };
@@ -79,7 +78,7 @@ pub(crate) fn ridge_surface(
     let remeshed = remesh(&surface.points, &surface.triangles, wanted, execution)?;
     let part_of = |origin: u32| {
         let corner = surface.triangles[origin as usize][0];
-        part[surface.source[corner as usize] as usize]
+        surface.source[corner as usize]
     };
     let found = Surface {
         source: remeshed
@@ -138,14 +137,14 @@ fn sound(mut surface: Surface, grid: &Grid) -> Result<Surface> {
     surface.compact()
 }
 
-/// The contour of the batch's sheets, cut at the rims; the part of each point's source, and the
+/// The contour of the batch's sheets, cut at the rims, with each point's part as its source; and the
 /// sheet fraction at the voxels.
 fn cut_surface(
     batch: &Batch,
     distance: &[f32],
     h: Vec3,
     execution: &mut Execution,
-) -> Result<(Surface, Vec<u32>, Vec<f32>)> {
+) -> Result<(Surface, Vec<f32>)> {
     let profile = Profile::new(batch, distance, h, execution)?;
     let mut sheets = core_sheets(batch, &profile, distance, h, execution)?;
     drop(profile);
@@ -162,26 +161,20 @@ fn cut_surface(
     for _ in 0..SETTLINGS {
         settle(batch, &mut sheets, h, execution)?;
     }
-    let contour = contour(batch, &sheets, h, execution)?;
+    let mut surface = contour(batch, &sheets, h, execution)?;
     let fraction = sheet_fraction(batch, &sheets, distance, h, execution)?;
     drop(sheets);
-    let mut surface = Surface {
-        source: (0..contour.points.len() as u32).collect(),
-        points: contour.points,
-        triangles: contour.triangles,
-    };
     make_manifold(&mut surface);
-    let at_points = values(batch, &surface, &contour.part, &fraction, h, execution)?;
+    let at_points = values(batch, &surface, &fraction, h, execution)?;
     trim(&mut surface, &at_points)?;
-    drop_scraps(&mut surface, &contour.part);
-    Ok((surface.compact()?, contour.part, fraction))
+    drop_scraps(&mut surface);
+    Ok((surface.compact()?, fraction))
 }
 
-/// The value of a field at every point of a surface.
+/// The value of a field at every point of a surface, whose points have their parts as sources.
 fn values(
     batch: &Batch,
     surface: &Surface,
-    part: &[u32],
     field: &[f32],
     h: Vec3,
     execution: &mut Execution,
@@ -190,7 +183,7 @@ fn values(
     execution.fill(&mut values, PIECE, |piece, out| {
         for (i, out) in out.iter_mut().enumerate() {
             let p = PIECE * piece + i;
-            let directory = &batch.directories[part[surface.source[p] as usize] as usize];
+            let directory = &batch.directories[surface.source[p] as usize];
             let sampler = Sampler {
                 directory,
                 field,

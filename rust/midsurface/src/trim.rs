@@ -171,8 +171,8 @@ fn keep(first: u32, side: &[Side], cut: &[u32], triangles: &[[u32; 3]], kept: &m
 /// the sheet, unless a part has no larger one.
 const SCRAP: f64 = 15.0;
 
-/// Drops scraps. `part` is the part of each point's source.
-pub(crate) fn drop_scraps(surface: &mut Surface, part: &[u32]) {
+/// Drops scraps. A point's source is its part.
+pub(crate) fn drop_scraps(surface: &mut Surface) {
     let mut pieces = DisjointSets::new(surface.points.len());
     for t in &surface.triangles {
         pieces.join(t[0] as usize, t[1] as usize);
@@ -183,8 +183,8 @@ pub(crate) fn drop_scraps(surface: &mut Surface, part: &[u32]) {
         let [a, b, c] = t.map(|p| surface.points[p as usize]);
         area[pieces.find(t[0] as usize)] += 0.5 * length(cross(sub(b, a), sub(c, a)));
     }
-    let part_of = |p: u32| part[surface.source[p as usize] as usize] as usize;
-    let parts = part.iter().max().map_or(0, |p| *p as usize + 1);
+    let part_of = |p: u32| surface.source[p as usize] as usize;
+    let parts = surface.source.iter().max().map_or(0, |p| *p as usize + 1);
     let mut largest = vec![0.0f64; parts];
     for t in &surface.triangles {
         let own = &mut largest[part_of(t[0])];
