@@ -17,7 +17,7 @@
 //! | scale | distance → how thick the label is here | `scale.rs` |
 //! | profile | mask → the mask smoothed as wide as it is thick | `profile.rs` |
 //! | sheets | profile → normal and offset of the sheet at every voxel near it | `crest.rs`, `extension.rs`, `settle.rs` |
-//! | contour | sheets → a surface through them, cut at the label's rims | `contour.rs`, `rim.rs`, `trim.rs` |
+//! | contour | sheets → a surface through them, cut at the label's rims | `contour.rs`, `rim.rs`, `trim.rs`, `scraps.rs` |
 //! | midway | surface → surface midway between both faces | `midway.rs` |
 //! | mesh | triangles → nearly equilateral ones, no terraces | `remesh`, `terraces.rs` |
 //!
@@ -67,6 +67,7 @@ mod ridge_surface;
 mod rim;
 mod runs;
 mod scale;
+mod scraps;
 mod separable;
 mod settle;
 mod sheet;

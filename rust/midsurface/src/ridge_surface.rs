@@ -3,7 +3,7 @@
 //! Batch by batch: how thick the label is (`scale.rs`), its profile under a Gaussian as wide
 //! (`profile.rs`), the sheets at its crest (`crest.rs`) and on to beyond the rims (`extension.rs`),
 //! a surface through them (`contour.rs`), wound the same way (`manifold.rs`), cut at the rims
-//! (`rim.rs`, `trim.rs`), moved midway between both faces (`midway.rs`) and remeshed (`remesh`).
+//! (`rim.rs`, `trim.rs`) and rid of scraps (`scraps.rs`), moved midway between both faces (`midway.rs`) and remeshed (`remesh`).
 
 use crate::bricks::Batch;
 use crate::components::Part;
@@ -21,10 +21,11 @@ use crate::midway::{move_midway, Label};
 use crate::profile::Profile;
 use crate::remesh::remesh;
 use crate::rim::sheet_fraction;
+use crate::scraps::drop_scraps;
 use crate::settle::settle;
 use crate::terraces::{flatten_terraces, LineOfPoint};
 use crate::thickness::View;
-use crate::trim::{drop_scraps, trim};
+use crate::trim::trim;
 
 /// Passes over a batch, for its progress.
 const PASSES: usize = 200;

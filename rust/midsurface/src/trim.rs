@@ -1,14 +1,14 @@
 //! Contour → surface with true rims: what reaches beyond the label is cut off.
 //!
 //! The contour runs on a little beyond the rims and over the holes of the label. It is cut where the
-//! sheet fraction (`ridge.rs`) is ½, between the points, so that rims and holes are where the data
+//! sheet fraction (`rim.rs`) is ½, between the points, so that rims and holes are where the data
 //! put them and not on the grid. What noise alone makes is left: a region below ½ is a hole only
 //! where its fraction falls far enough, and a region above ½ is a piece of sheet only where its
 //! fraction rises far enough (hysteresis, as in Canny 1986).
 
 use crate::components::DisjointSets;
 use crate::error::{reserved, zeros, Result};
-use crate::grid::{along, cross, length, sub, Vec3};
+use crate::grid::{along, sub, Vec3};
 use crate::halfedge::{ends, Edges};
 use crate::manifold::{make_manifold, Surface};
 
@@ -165,35 +165,4 @@ fn keep(first: u32, side: &[Side], cut: &[u32], triangles: &[[u32; 3]], kept: &m
             }
         }
     }
-}
-
-/// Pieces of surface smaller than this, square work units, are scraps that the contour left beside
-/// the sheet, unless a part has no larger one.
-const SCRAP: f64 = 15.0;
-
-/// Drops scraps. A point's source is its part.
-pub(crate) fn drop_scraps(surface: &mut Surface) {
-    let mut pieces = DisjointSets::new(surface.points.len());
-    for t in &surface.triangles {
-        pieces.join(t[0] as usize, t[1] as usize);
-        pieces.join(t[0] as usize, t[2] as usize);
-    }
-    let mut area = vec![0.0; surface.points.len()];
-    for t in &surface.triangles {
-        let [a, b, c] = t.map(|p| surface.points[p as usize]);
-        area[pieces.find(t[0] as usize)] += 0.5 * length(cross(sub(b, a), sub(c, a)));
-    }
-    let part_of = |p: u32| surface.source[p as usize] as usize;
-    let parts = surface.source.iter().max().map_or(0, |p| *p as usize + 1);
-    let mut largest = vec![0.0f64; parts];
-    for t in &surface.triangles {
-        let own = &mut largest[part_of(t[0])];
-        *own = own.max(area[pieces.find(t[0] as usize)]);
-    }
-    let mut triangles = std::mem::take(&mut surface.triangles);
-    triangles.retain(|t| {
-        let own = area[pieces.find(t[0] as usize)];
-        own >= SCRAP || own >= largest[part_of(t[0])]
-    });
-    surface.triangles = triangles;
 }
