@@ -37,6 +37,9 @@ const SEAM: f64 = 1.0;
 /// No corner in a crossed edge's cube.
 const NO_CORNER: u8 = 15;
 
+/// Passes over all bricks that [`contour`] makes, for its progress.
+pub(crate) const PASSES: usize = 2;
+
 /// The surfaces of all parts of a batch, points in work units; a point's source is its part, as an
 /// index into the batch's. `h` is the work spacing.
 pub(crate) fn contour(

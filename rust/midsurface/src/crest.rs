@@ -14,7 +14,7 @@ use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot as dot3, Vec3};
 use crate::profile::{Derivatives, Profile};
-use crate::separable::{smooth_some, Kernel};
+use crate::separable::{self, smooth_some, Kernel};
 use crate::sheet::{dot, source, unshrink, Sheet, ENTRIES, TRUSTED};
 
 /// A core voxel's profile falls within the sheet by at most this much, in σ² times curvature.
@@ -30,6 +30,9 @@ const RHO_STEP: f32 = 1.1892;
 const REACH: f32 = 2.3;
 /// Offsets beyond this are of no use to a contour, in the coarsest spacing.
 const FARTHEST: f32 = 2.0;
+
+/// Passes over all bricks that [`core_sheets`] makes, for its progress.
+pub(crate) const PASSES: usize = 5 + separable::PASSES;
 
 /// The sheets of the core voxels of a batch.
 pub(crate) fn core_sheets(

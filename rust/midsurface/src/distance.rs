@@ -15,6 +15,9 @@ use crate::grid::Vec3;
 /// Distances are told apart up to this many work units; nothing so thick is a membrane.
 pub(crate) const LARGEST: f64 = 64.0;
 
+/// Passes over all bricks that [`distance`] makes, for its progress.
+pub(crate) const PASSES: usize = 2;
+
 /// Distance of every voxel in the batch's bricks, 0 outside the parts. `h` is the work spacing.
 pub(crate) fn distance(batch: &Batch, h: Vec3, execution: &mut Execution) -> Result<Vec<f32>> {
     let mut along_x = batch.field()?;

@@ -42,6 +42,8 @@ const MOST_ITEMS: usize = 4096;
 pub(crate) struct Execution<'a> {
     pool: ThreadPool,
     observer: &'a mut dyn Observer,
+    /// The share of the run's progress that stages share out, and the present stage's of that.
+    span: [f64; 2],
     stage: &'static str,
     from: f64,
     to: f64,
@@ -60,6 +62,7 @@ impl<'a> Execution<'a> {
         Ok(Self {
             pool,
             observer,
+            span: [0.0, 1.0],
             stage: "",
             from: 0.0,
             to: 0.0,
@@ -68,18 +71,29 @@ impl<'a> Execution<'a> {
         })
     }
 
-    /// Announces the next stage, which takes the run's progress from `from` to `to` in so many
-    /// passes over the data.
+    /// Lets the stages that follow share out the run's progress between `from` and `to`.
+    pub fn within(&mut self, from: f64, to: f64) {
+        self.span = [from, to];
+    }
+
+    /// Announces the next stage, which takes the progress from `from` to `to`, counted within the
+    /// present span, in so many passes over the data.
     pub fn stage(&mut self, stage: &'static str, from: f64, to: f64, passes: usize) -> Result<()> {
         (self.stage, self.from, self.to) = (stage, from, to);
         (self.passes, self.passes_done) = (passes, 0);
         self.report(0.0)
     }
 
+    /// Corrects the number of passes of the present stage: so many are still to come.
+    pub fn still(&mut self, passes: usize) {
+        self.passes = self.passes_done + passes;
+    }
+
     /// Tells the observer how much of the stage's present pass is done.
     pub fn report(&mut self, share: f64) -> Result<()> {
         let passes = (self.passes_done as f64 + share) / self.passes as f64;
-        let fraction = self.from + (self.to - self.from) * passes.min(1.0);
+        let stages = self.from + (self.to - self.from) * passes.min(1.0);
+        let fraction = self.span[0] + (self.span[1] - self.span[0]) * stages;
         if self.observer.progress(fraction.clamp(0.0, 1.0), self.stage) {
             Ok(())
         } else {

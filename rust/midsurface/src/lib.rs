@@ -269,12 +269,11 @@ fn find_ridge_surface(
     for parts in batches(&all_parts) {
         let share = |voxels: usize| 0.15 + 0.85 * voxels as f64 / total as f64;
         let voxels: usize = parts.iter().map(Part::voxels).sum();
-        let span = [share(done), share(done + voxels)];
+        execution.within(share(done), share(done + voxels));
         ridge_surface::ridge_surface(
             parts,
             &volume.grid,
             options.edge_length,
-            span,
             &mut mesh,
             execution,
         )?;

@@ -27,6 +27,8 @@ const ROUNDS: usize = 10;
 const MOVES: usize = 2;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
+/// Passes over the points that [`move_midway`] makes, for its progress.
+pub(crate) const PASSES: usize = MOVES * (1 + ROUNDS);
 
 /// How far off each point is, and how much of that was seen there.
 type Seen = [f32; 2];

@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::scale::HalfThickness;
-use crate::separable::{smooth_some, Kernel};
+use crate::separable::{self, smooth_some, Kernel};
 
 /// σ over the local half thickness.
 const SHARE: f32 = 0.7;
@@ -49,10 +49,11 @@ impl Profile {
     pub fn new(
         batch: &Batch,
         distance: &[f32],
+        half_thickness: HalfThickness,
         h: Vec3,
         execution: &mut Execution,
     ) -> Result<Self> {
-        let half_thickness = HalfThickness::new(batch, distance, execution)?;
+        execution.still(1 + passes(u8::MAX, h));
         let bricks = batch.part_of_brick.len();
         let wanted = execution.collect(bricks, |brick| {
             let near = Block::gather(batch, brick, distance);
@@ -61,6 +62,8 @@ impl Profile {
             }
             levels_of(&half_thickness.brick(batch, brick).map(level))
         })?;
+        let somewhere = wanted.iter().fold(0, |bits, wanted| bits | wanted);
+        execution.still(passes(somewhere, h));
         let mut levels = Vec::new();
         for level in 0..LEVELS {
             levels.push(smooth_level(batch, &wanted, level, distance, h, execution)?);
@@ -161,6 +164,21 @@ fn levels_of(coordinates: &[f32; BRICK]) -> u8 {
     })
 }
 
+/// Rings of bricks that a level's filter reaches into.
+fn rings(level: usize, h: Vec3) -> usize {
+    let finest = h.iter().copied().fold(f64::INFINITY, f64::min);
+    let reach = REACH * f64::from(sigma(level as f32)) / finest;
+    (reach.round() as usize + 1).div_ceil(EDGE)
+}
+
+/// Passes over all bricks that it takes to smooth the mask at these levels.
+fn passes(levels: u8, h: Vec3) -> usize {
+    (0..LEVELS)
+        .filter(|level| levels >> level & 1 == 1)
+        .map(|level| rings(level, h) + 1 + separable::PASSES)
+        .sum()
+}
+
 /// The mask at one level, right in the bricks that want it and a voxel around.
 fn smooth_level(
     batch: &Batch,
@@ -178,11 +196,8 @@ fn smooth_level(
         return Ok(Vec::new());
     };
     let kernels = [Kernel::repeating(sigma, REACH * sigma, h, directory)];
-    let rings =
-        ((REACH * sigma / h.iter().copied().fold(f64::INFINITY, f64::min)).round() as usize + 1)
-            .div_ceil(EDGE);
     let mut active: Vec<bool> = wanted.iter().map(|w| w >> level & 1 == 1).collect();
-    for _ in 0..rings {
+    for _ in 0..rings(level, h) {
         active = execution.collect(active.len(), |brick| {
             let (directory, place) = batch.brick(brick);
             directory.around(place).any(|b| active[b])

@@ -3,13 +3,15 @@
 //! Batch by batch: how thick the label is (`scale.rs`), its profile under a Gaussian as wide
 //! (`profile.rs`), the sheets at its crest (`crest.rs`) and on to beyond the rims (`extension.rs`),
 //! a surface through them (`contour.rs`), wound the same way (`manifold.rs`), cut at the rims
-//! (`rim.rs`, `trim.rs`) and rid of scraps (`scraps.rs`), moved midway between both faces (`midway.rs`) and remeshed (`remesh`).
+//! (`rim.rs`, `trim.rs`) and rid of scraps (`scraps.rs`), moved midway between both faces
+//! (`midway.rs`) and remeshed (`remesh`). How much of the progress a stage is given is how long it
+//! took on the membranes of real cells.
 
 use crate::bricks::Batch;
 use crate::components::Part;
-use crate::contour::contour;
-use crate::crest::core_sheets;
-use crate::distance::distance;
+use crate::contour;
+use crate::crest::{self, core_sheets};
+use crate::distance;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::extension::extend;
@@ -17,18 +19,18 @@ use crate::grid::{Grid, Vec3};
 use crate::interpolation::Sampler;
 use crate::manifold::{make_manifold, Surface};
 use crate::mesh::{is_degenerate, normals, turn_outward, Mesh};
-use crate::midway::{move_midway, Label};
+use crate::midway::{self, move_midway, Label};
 use crate::profile::Profile;
 use crate::remesh::remesh;
-use crate::rim::sheet_fraction;
+use crate::rim::{self, sheet_fraction};
+use crate::scale::{self, HalfThickness};
 use crate::scraps::drop_scraps;
 use crate::settle::settle;
-use crate::terraces::{flatten_terraces, LineOfPoint};
+use crate::sheet::Sheet;
+use crate::terraces::{self, flatten_terraces, LineOfPoint};
 use crate::thickness::View;
 use crate::trim::trim;
 
-/// Passes over a batch, for its progress.
-const PASSES: usize = 200;
 /// The edge length by default, in units of the finest spacing (the paper's step).
 const EDGE_LENGTH: f64 = std::f64::consts::SQRT_2;
 /// How far offsets are followed, in the coarsest spacing.
@@ -46,22 +48,26 @@ const MENDINGS: usize = 4;
 const PIECE: usize = 1024;
 
 /// Finds the surfaces of parts that make up whole components and appends them to `mesh`. Edges are
-/// `edge_length` world units long, 0: the default. `span` is the batch's share of the run's progress.
+/// `edge_length` world units long, 0: the default.
 pub(crate) fn ridge_surface(
     parts: &[Part],
     grid: &Grid,
     edge_length: f64,
-    span: [f64; 2],
     mesh: &mut Mesh,
     execution: &mut Execution,
 ) -> Result<()> {
     let h = grid.work_spacing();
-    let at = |share: f64| span[0] + share * (span[1] - span[0]);
-    execution.stage("Finding sheets", at(0.0), at(0.5), 60)?;
+    execution.stage(
+        "Measuring thickness",
+        0.0,
+        0.01,
+        distance::PASSES + scale::PASSES,
+    )?;
     let batch = &Batch::new(parts, grid.dimensions)?;
-    let distance = distance(batch, h, execution)?;
-    let (mut surface, fraction) = cut_surface(batch, &distance, h, execution)?;
-    execution.stage("Moving midway", at(0.5), at(0.7), 30)?;
+    let distance = distance::distance(batch, h, execution)?;
+    let sheets = find_sheets(batch, &distance, h, execution)?;
+    let (mut surface, fraction) = cut_surface(batch, sheets, &distance, h, execution)?;
+    execution.stage("Moving midway", 0.56, 0.69, 1 + midway::PASSES)?;
     let fraction = values(batch, &surface, &fraction, h, execution)?;
     let label = Label {
         batch,
@@ -71,7 +77,7 @@ pub(crate) fn ridge_surface(
     };
     move_midway(&label, &mut surface, execution)?;
     turn_outward(&surface.points, &mut surface.triangles);
-    execution.stage("Remeshing", at(0.7), at(1.0), PASSES)?;
+    execution.stage("Remeshing", 0.69, 0.94, 1)?;
     let wanted = match edge_length {
         0.0 => EDGE_LENGTH,
         length => length / grid.unit(),
@@ -90,6 +96,7 @@ pub(crate) fn ridge_surface(
         points: remeshed.points,
         triangles: remeshed.triangles,
     };
+    execution.stage("Flattening terraces", 0.94, 1.0, 1 + terraces::PASSES)?;
     let mut found = sound(found, grid)?;
     flatten(&mut found, wanted, execution)?;
     append(batch, &distance, grid, sound(found, grid)?, mesh, execution)
@@ -138,17 +145,20 @@ fn sound(mut surface: Surface, grid: &Grid) -> Result<Surface> {
     surface.compact()
 }
 
-/// The contour of the batch's sheets, cut at the rims, with each point's part as its source; and the
-/// sheet fraction at the voxels.
-fn cut_surface(
+/// The sheets of a batch, from the profile's crest to beyond the rims.
+fn find_sheets(
     batch: &Batch,
     distance: &[f32],
     h: Vec3,
     execution: &mut Execution,
-) -> Result<(Surface, Vec<f32>)> {
-    let profile = Profile::new(batch, distance, h, execution)?;
+) -> Result<Vec<Sheet>> {
+    let half_thickness = HalfThickness::new(batch, distance, execution)?;
+    execution.stage("Smoothing labels", 0.01, 0.05, 1)?;
+    let profile = Profile::new(batch, distance, half_thickness, h, execution)?;
+    execution.stage("Finding sheets", 0.05, 0.27, crest::PASSES)?;
     let mut sheets = core_sheets(batch, &profile, distance, h, execution)?;
     drop(profile);
+    execution.stage("Extending sheets", 0.27, 0.38, RINGS)?;
     let farthest = FARTHEST * h.iter().copied().fold(1.0, f64::max);
     extend(
         batch,
@@ -159,16 +169,33 @@ fn cut_surface(
         &mut sheets,
         execution,
     )?;
+    execution.stage("Settling sheets", 0.38, 0.47, SETTLINGS)?;
     for _ in 0..SETTLINGS {
         settle(batch, &mut sheets, h, execution)?;
     }
-    let mut surface = contour(batch, &sheets, h, execution)?;
+    Ok(sheets)
+}
+
+/// The contour of the batch's sheets, cut at the rims, with each point's part as its source; and the
+/// sheet fraction at the voxels.
+fn cut_surface(
+    batch: &Batch,
+    sheets: Vec<Sheet>,
+    distance: &[f32],
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<(Surface, Vec<f32>)> {
+    execution.stage("Joining sheets", 0.47, 0.54, 1 + contour::PASSES)?;
+    let mut surface = contour::contour(batch, &sheets, h, execution)?;
+    make_manifold(&mut surface);
+    execution.pass_done()?;
+    execution.stage("Trimming at rims", 0.54, 0.56, 2 + rim::PASSES)?;
     let fraction = sheet_fraction(batch, &sheets, distance, h, execution)?;
     drop(sheets);
-    make_manifold(&mut surface);
     let at_points = values(batch, &surface, &fraction, h, execution)?;
     trim(&mut surface, &at_points)?;
     drop_scraps(&mut surface);
+    execution.pass_done()?;
     Ok((surface.compact()?, fraction))
 }
 

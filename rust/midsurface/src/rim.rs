@@ -10,8 +10,8 @@ use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::profile::mask;
-use crate::scale::BrickMeans;
-use crate::separable::{smooth_some, Kernel};
+use crate::scale::{self, BrickMeans};
+use crate::separable::{self, smooth_some, Kernel};
 use crate::sheet::Sheet;
 
 /// σ of the smoothing, work units.
@@ -20,6 +20,9 @@ const SIGMA: f64 = 1.0;
 const REACH: f64 = 2.6;
 /// How near to the middle of a sheet its inside is measured, work units.
 const CLOSE: f32 = 0.5;
+
+/// Passes over all bricks that [`sheet_fraction`] makes, for its progress.
+pub(crate) const PASSES: usize = 2 + separable::PASSES + scale::PASSES;
 
 /// The sheet fraction at every voxel of a batch; 0 where no sheet is near.
 pub(crate) fn sheet_fraction(

@@ -15,6 +15,9 @@ const BEYOND_FACE: f32 = 0.4;
 /// The smallest half thickness: that of a single voxel.
 const LEAST: f32 = 0.5;
 
+/// Passes over all bricks that [`BrickMeans::new`] makes, for its progress.
+pub(crate) const PASSES: usize = 1;
+
 /// Two sums for every brick of a batch whose ratio is a mean, interpolated between the bricks.
 pub(crate) struct BrickMeans(Vec<[f32; 2]>);
 

@@ -8,6 +8,9 @@ use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
 
+/// Passes over all bricks that a filter makes, for its progress.
+pub(crate) const PASSES: usize = 3;
+
 /// Gaussian weights along one axis, for every place it can have to the borders of the volume.
 ///
 /// Beyond the border lies the unknown. There the weights become those of a local linear fit (Fan

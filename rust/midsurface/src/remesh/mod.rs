@@ -76,6 +76,8 @@ const COARSE_RELAXATIONS: usize = 8;
 const FINE_RELAXATIONS: usize = 3;
 /// Points handed to a worker at a time.
 const PIECE: usize = 4096;
+/// Passes that subdividing makes, and finding out where the points lie on the reference.
+const OTHER_PASSES: usize = 3;
 
 /// Remeshes a consistently wound 2-manifold, with or without boundary, to edges of about
 /// `edge_length`. Lengths are in units of the finest voxel spacing.
@@ -88,9 +90,11 @@ pub(crate) fn remesh(
     if triangles.is_empty() {
         return Ok(Remeshed::default());
     }
+    let coarse = schedule(points, triangles, 2.0 * edge_length);
+    let over_blocks = 2 * (coarse.len() + FINE_PASSES);
+    execution.still(reference::PASSES + over_blocks + OTHER_PASSES);
     let reference = Reference::new(points, triangles, edge_length, execution)?;
     let mut surface = start(&reference)?;
-    let coarse = schedule(points, triangles, 2.0 * edge_length);
     for (number, &longest) in coarse.iter().enumerate() {
         let blocks = Blocks::new(&surface, BLOCK * longest, shift(number), execution)?;
         surface = blocks.work(&surface, &reference, (2.0, longest), execution, |patch| {

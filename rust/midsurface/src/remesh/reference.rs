@@ -16,6 +16,8 @@ use crate::halfedge::{ends, previous, Fans, NONE};
 
 /// Items handed to a worker at a time.
 const PIECE: usize = 4096;
+/// Passes over the reference that learning it takes, for its progress.
+pub(super) const PASSES: usize = 2 + sizing::PASSES;
 /// The most triangles that a walk crosses.
 const LONGEST_WALK: usize = 256;
 /// A walk ends after so many triangles without coming nearer.

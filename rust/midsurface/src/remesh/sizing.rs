@@ -27,6 +27,8 @@ const LOOP_EDGES: f64 = 6.0;
 const SMOOTHING: usize = 3;
 /// Points handed to a worker at a time.
 const PIECE: usize = 4096;
+/// Passes over the reference that [`sizes`] makes, for its progress.
+pub(super) const PASSES: usize = SMOOTHING + 1;
 
 /// The edge length wanted at every point of the reference.
 pub(super) fn sizes(
