@@ -2,6 +2,7 @@
 
 #include "FilterRun.h"
 #include "LabelTable.h"
+#include "Pieces.h"
 #include "TriangleInput.h"
 
 #include "vtkDoubleArray.h"
@@ -144,7 +145,13 @@ int vtkMidSurfaceStatistics::RequestData(
 {
   vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
   vtkTable* output = vtkTable::GetData(outputVector);
-  return FilterRun::Execute(this, 0, output, [input, output](FilterRun&) {
+  vtkInformation* outputInformation = outputVector->GetInformationObject(0);
+  const int result = FilterRun::Execute(this, 0, output, [=](FilterRun&) {
+    Pieces::CheckInput(outputInformation, input);
+    if (!Pieces::IsFirst(outputInformation))
+    {
+      return;
+    }
     const TriangleInput triangles(input);
     const std::vector<Row> rows = midsurface::Measure(triangles.Mesh());
     AddScope(output, rows, input->GetFieldData());
@@ -152,4 +159,5 @@ int vtkMidSurfaceStatistics::RequestData(
     AddThickness(output, rows);
     AddQuality(output, rows);
   });
+  return Pieces::Result(outputInformation, result);
 }

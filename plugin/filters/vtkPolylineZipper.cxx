@@ -1,6 +1,7 @@
 #include "vtkPolylineZipper.h"
 
 #include "FilterRun.h"
+#include "Pieces.h"
 #include "PolyDataConversion.h"
 
 #include "vtkFieldData.h"
@@ -29,11 +30,18 @@ int vtkPolylineZipper::RequestData(
 {
   vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  return FilterRun::Execute(this, this->Threads, output, [input, output](FilterRun& run) {
+  vtkInformation* outputInformation = outputVector->GetInformationObject(0);
+  const int result = FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
+    Pieces::CheckInput(outputInformation, input);
+    if (!Pieces::IsFirst(outputInformation))
+    {
+      return;
+    }
     const PolylineInput lines(input);
     const midsurface::Polylines polylines = midsurface::MakePolylines(lines.Arrays());
     const midsurface::Mesh mesh = midsurface::Zip(polylines, run.Options);
     CopyMesh(midsurface::Arrays(mesh), output);
     output->GetFieldData()->PassData(input->GetFieldData());
   });
+  return Pieces::Result(outputInformation, result);
 }

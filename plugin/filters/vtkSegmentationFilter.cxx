@@ -3,6 +3,7 @@
 #include "FilterRun.h"
 #include "ImageSpacing.h"
 #include "LabelSelection.h"
+#include "Pieces.h"
 #include "SegmentationVolume.h"
 
 #include "vtkCommand.h"
@@ -13,22 +14,44 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 namespace
 {
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
 /** The extent of the image that `input` may be a piece or a block of. */
 const int* WholeExtent(vtkInformationVector** inputVector, vtkImageData* input)
 {
   const int* own = input->GetExtent();
-  const int* whole =
-    inputVector[0]->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
+  const int* whole = inputVector[0]->GetInformationObject(0)->Get(Pipeline::WHOLE_EXTENT());
   bool isPiece = whole != nullptr;
   for (int axis = 0; isPiece && axis < 3; ++axis)
   {
     isPiece = whole[2 * axis] <= own[2 * axis] && own[2 * axis + 1] <= whole[2 * axis + 1];
   }
   return isPiece ? whole : own;
+}
+
+bool IsImage(vtkInformation* output)
+{
+  return vtkImageData::SafeDownCast(vtkDataObject::GetData(output)) != nullptr;
+}
+
+/** Leaves of `field`, made of a whole image, what belongs to `piece`, beside what that holds. */
+void CutOut(vtkImageData* field, vtkImageData* piece)
+{
+  field->Crop(piece->GetExtent());
+  for (const int association :
+    { vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataObject::FIELD_ASSOCIATION_CELLS })
+  {
+    vtkDataSetAttributes* made = field->GetAttributes(association);
+    vtkNew<vtkFieldData> kept;
+    kept->PassData(made);
+    made->PassData(piece->GetAttributes(association));
+    made->vtkFieldData::PassData(kept);
+  }
 }
 } // namespace
 
@@ -75,16 +98,33 @@ public:
     }
   }
 
-  /** Whether the input is a collection of blocks, or a piece of which others have the rest. */
-  static bool IsInputSplit(vtkSegmentationFilter* self)
+  /** All of the image of which `input` may be the piece of this process. */
+  vtkSmartPointer<vtkImageData> FindWhole(vtkSegmentationFilter* self, vtkInformation* source,
+    vtkImageData* input, vtkInformation* output)
   {
-    return vtkCompositeDataSet::SafeDownCast(self->GetInputDataObject(0, 0)) ||
-      self->GetOutputInformation(0)->Get(
-        vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+    if (!input || this->HasBlocks || !Pieces::AreShared(output))
+    {
+      return input;
+    }
+    vtkSmartPointer<vtkImageData> whole =
+      Pieces::Join(source, input, Find(self, input), IsImage(output));
+    if (!whole)
+    {
+      return input;
+    }
+    this->Labels.Read(
+      [self](vtkImageData* image) { return Find(self, image); }, whole, self->Threads);
+    return whole;
+  }
+
+  /** Each process works on its own blocks, and one on the surface of an image that all share. */
+  bool HasToWork(vtkInformation* output) const
+  {
+    return this->HasBlocks || Pieces::IsFirst(output) || IsImage(output);
   }
 
   int RunDepth = 0;
-  bool InputIsSplit = false;
+  bool HasBlocks = false;
 };
 
 //------------------------------------------------------------------------------
@@ -162,7 +202,8 @@ void vtkSegmentationFilter::RunStarts()
   if (this->Internals->RunDepth == 0)
   {
     this->Internals->FindLabels(this);
-    this->Internals->InputIsSplit = vtkInternals::IsInputSplit(this);
+    this->Internals->HasBlocks =
+      vtkCompositeDataSet::SafeDownCast(this->GetInputDataObject(0, 0)) != nullptr;
   }
   ++this->Internals->RunDepth;
 }
@@ -224,11 +265,13 @@ int vtkSegmentationFilter::RequestUpdateExtent(
 {
   vtkInformation* input = inputVector[0]->GetInformationObject(0);
   vtkInformation* output = outputVector->GetInformationObject(0);
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  // The surface within a part depends on what lies around it: work on all of the image.
-  if (output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) <= 1 && input->Has(Pipeline::WHOLE_EXTENT()))
+  // The surface within a part depends on what lies around it: work on all of the image. Processes
+  // ask for their pieces, which need not cross the network twice, and join them.
+  if (!Pieces::AreShared(output) && input->Has(Pipeline::WHOLE_EXTENT()))
   {
     input->Set(Pipeline::UPDATE_EXTENT(), input->Get(Pipeline::WHOLE_EXTENT()), 6);
+    input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+    input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
   }
   return 1;
 }
@@ -237,12 +280,19 @@ int vtkSegmentationFilter::RequestUpdateExtent(
 int vtkSegmentationFilter::RequestData(
   vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkImageData* input = vtkImageData::GetData(inputVector[0]);
+  vtkImageData* piece = vtkImageData::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  vtkInformation* outputInformation = outputVector->GetInformationObject(0);
   const int result = FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
+    const vtkSmartPointer<vtkImageData> input = this->Internals->FindWhole(
+      this, inputVector[0]->GetInformationObject(0), piece, outputInformation);
+    if (!this->Internals->HasToWork(outputInformation))
+    {
+      return;
+    }
     if (!input || input->GetNumberOfPoints() == 0)
     {
-      if (!this->Internals->InputIsSplit)
+      if (!this->Internals->HasBlocks && Pieces::IsFirst(outputInformation))
       {
         run.Warn("The input has no voxels: the output is empty.");
       }
@@ -257,14 +307,28 @@ int vtkSegmentationFilter::RequestData(
     }
     this->Internals->Labels.Apply(run, volume);
     this->Extract(run, volume, output);
-    output->GetFieldData()->PassData(input->GetFieldData());
+    output->GetFieldData()->PassData(piece->GetFieldData());
   });
-  auto* image = vtkImageData::SafeDownCast(output);
-  if (image && input && image->GetNumberOfPoints() == 0)
+  this->FitToRequest(vtkImageData::SafeDownCast(output), piece, outputInformation);
+  return Pieces::Result(outputInformation, result);
+}
+
+//------------------------------------------------------------------------------
+void vtkSegmentationFilter::FitToRequest(
+  vtkImageData* output, vtkImageData* piece, vtkInformation* outputInformation)
+{
+  if (!output || !piece)
+  {
+    return;
+  }
+  if (output->GetNumberOfPoints() == 0)
   {
     // An image that lacks the extent that was asked for would be asked for again and again, each
     // time with the same message.
-    image->CopyStructure(input);
+    output->CopyStructure(piece);
   }
-  return result;
+  else if (Pieces::AreShared(outputInformation) && !this->Internals->HasBlocks)
+  {
+    CutOut(output, piece);
+  }
 }

@@ -13,7 +13,10 @@
  * name, or both as in "3: outer membrane".
  *
  * Under MPI (a vtkMultiProcessController with many processes) all processes update the filter
- * together, since they tell each other which labels they have.
+ * together. A surface within a part of the volume depends on what lies around that part: the first
+ * process collects the labels of all and makes the whole surface, the others make none. Where the
+ * output is an image, each process collects all labels and keeps its part of the output. Blocks of
+ * a collection are worked on by the process that holds them.
  *
  * Bad input is reported by an error or warning of the filter, and the output is empty (an image
  * has no arrays). So it is, with a warning, after an abort.
@@ -130,6 +133,7 @@ private:
   vtkSegmentationFilter(const vtkSegmentationFilter&) = delete;
   void operator=(const vtkSegmentationFilter&) = delete;
 
+  void FitToRequest(vtkImageData* output, vtkImageData* piece, vtkInformation* outputInformation);
   void LabelsChanged();
   void RunStarts();
   void RunEnds();

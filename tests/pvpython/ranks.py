@@ -1,48 +1,162 @@
-"""Several processes, each with its part of the volume: the list of labels is complete in all.
+"""Several processes: all of them together give what one gives.
 
-`pvpython ranks.py VOLUME` writes the volume, `mpiexec -n 3 pvbatch ranks.py PLUGIN VOLUME` checks.
+`pvpython ranks.py write PLUGIN VOLUME` writes a volume, and beside it what one process makes of it.
+`mpiexec -n 3 pvbatch ranks.py check PLUGIN VOLUME` compares, and so does
+`pvpython ranks.py check PLUGIN VOLUME PORT` as the client of a pvserver of several processes.
 """
 import sys
 
 import numpy as np
 from paraview import servermanager, simple
 
-from pipeline import image
+from pipeline import arrays, image
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
-
-def write(path):
-    volume = np.zeros((24, 16, 20), np.int16)
-    volume[:8, 6:10, 2:-2] = -7
-    volume[8:16, 6:10, 2:-2] = 1
-    volume[16:, 6:10, 2:-2] = 200
-    writer = vtkXMLImageDataWriter()
-    writer.SetFileName(path)
-    writer.SetInputData(image(volume))
-    writer.SetDataModeToBinary()
-    writer.Write()
+LABELS = ["-7", "1", "200"]
 
 
-def check(path, plugin):
-    simple.LoadPlugin(plugin, remote=False, ns=vars(simple))
-    ranks = servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions()
-    reader = simple.XMLImageDataReader(FileName=[path])
-    reader.UpdatePipeline()
+def write_volumes(path):
+    """A sheet that lies flat, a sphere through the middle of the volume, and an upright sheet; on
+    points, and on cells in another file."""
+    z, y, x = np.mgrid[:40, :44, :48]
+    volume = np.zeros(x.shape, np.int16)
+    volume[2:6, 4:40, 4:44] = -7
+    volume[abs(np.sqrt((x - 20.3) ** 2 + (y - 21.1) ** 2 + (z - 23.2) ** 2) - 12) < 2.2] = 1
+    volume[10:, 4:40, 40:44] = 200
+    for name, data in ((path, image(volume)), (path + ".cells.vti", image(volume, cells=True))):
+        writer = vtkXMLImageDataWriter()
+        writer.SetFileName(name)
+        writer.SetInputData(data)
+        writer.SetDataModeToBinary()
+        writer.Write()
+
+
+def fetch(proxy):
+    """What all processes together have made."""
+    proxy.UpdatePipeline()
+    return servermanager.Fetch(proxy)
+
+
+def columns(table):
+    """The columns of numbers of a vtkTable, by name."""
+    data = table.GetRowData()
+    names = [data.GetArrayName(index) for index in range(data.GetNumberOfArrays())]
+    return {name: vtk_to_numpy(data.GetArray(name)) for name in names if data.GetArray(name)}
+
+
+def integrals(proxy):
+    """What Distance and RidgeField add up to, each part of the image counted once."""
+    fields = fetch(simple.IntegrateVariables(Input=proxy)).GetPointData()
+    return np.array([fields.GetArray(name).GetValue(0) for name in ("Distance", "RidgeField")])
+
+
+def run_all(reader, on_cells):
+    """Every filter's output, as numpy arrays by the filter's name and the array's."""
+    ridge = simple.MidSurface(Input=reader)
+    polylines = simple.MidPolylines(Input=reader)
+    outputs = {
+        "ridge surface": ridge,
+        "zipper": simple.MidSurface(Input=reader, Method="Polyline zipper"),
+        "polylines": polylines,
+        "chain": simple.PolylineZipper(Input=polylines),
+        "cells": simple.MidSurface(Input=on_cells),
+    }
+    found = {}
+    for name, proxy in outputs.items():
+        # As a window would: everything upstream is shown in parts, before and after.
+        reader.UpdatePipeline()
+        for array, values in arrays(fetch(proxy)).items():
+            found[f"{name}: {array}"] = values
+    for name, values in columns(fetch(simple.MidSurfaceStatistics(Input=ridge))).items():
+        found[f"table: {name}"] = values
+    found["field: sums"] = integrals(simple.RidgeField(Input=reader))
+    return found
+
+
+def check_labels(reader):
     proxy = simple.MidSurface(Input=reader)
     proxy.UpdatePipelineInformation()
-    expected = ["-7", "1", "200"]
-    assert list(proxy.Labels.Available) == expected, list(proxy.Labels.Available)
-    assert list(proxy.Labels) == expected, list(proxy.Labels)
-    for chosen in (["200"], ["-7"], expected):
+    assert list(proxy.Labels.Available) == LABELS, list(proxy.Labels.Available)
+    assert list(proxy.Labels) == LABELS, list(proxy.Labels)
+    for chosen in (["200"], ["-7"], LABELS):
         proxy.Labels = chosen
         proxy.UpdatePipeline()
         low, high = proxy.CellData["Label"].GetRange(0)
         assert (low, high) == (int(chosen[0]), int(chosen[-1])), (low, high, chosen)
-    print(f"labels are complete with {ranks} processes")
+
+
+def check_that_nobody_waits(reader):
+    """A run that fails in one process leaves the others as they should be."""
+    proxy = simple.MidSurface(Input=reader, Labels=["9"])
+    table = simple.MidSurfaceStatistics(Input=proxy)
+    for _ in range(2):
+        table.UpdatePipeline()
+        assert proxy.GetDataInformation().GetNumberOfCells() == 0
+    proxy.Labels = ["1"]
+    table.UpdatePipeline()
+    assert proxy.GetDataInformation().GetNumberOfCells() > 0
+
+
+def check_a_source_that_gives_fixed_parts(processes):
+    """Each process says that its part is the whole: no surface, rather than one with seams."""
+    source = simple.ProgrammableSource(
+        OutputDataSetType="vtkImageData",
+        ScriptRequestInformation="""
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+rank = vtkMultiProcessController.GetGlobalController().GetLocalProcessId()
+extent = (0, 9, 0, 9, 9 * rank, 9 * rank + 9)
+executive = self.GetExecutive()
+executive.GetOutputInformation(0).Set(executive.WHOLE_EXTENT(), *extent)
+""",
+        Script="""
+import numpy as np
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+rank = vtkMultiProcessController.GetGlobalController().GetLocalProcessId()
+output.SetExtent(0, 9, 0, 9, 9 * rank, 9 * rank + 9)
+labels = np.zeros((10, 10, 10), np.uint8)
+labels[:, 4:7, :] = 1
+output.PointData.append(labels.ravel(), "labels")
+""",
+    )
+    source.UpdatePipeline()
+    mesh = simple.MidSurface(Input=source)
+    mesh.UpdatePipeline()
+    assert (mesh.GetDataInformation().GetNumberOfCells() > 0) == (processes == 1)
+
+
+def check(reader, on_cells, expected, processes):
+    # With the reader's parts loaded each process has seen some labels only.
+    reader.UpdatePipeline()
+    check_labels(reader)
+    found = run_all(reader, on_cells)
+    assert sorted(found) == sorted(expected.files), set(found) ^ set(expected.files)
+    for name in expected.files:
+        if name == "field: sums":
+            np.testing.assert_allclose(found[name], expected[name], rtol=1e-6)
+        else:
+            np.testing.assert_array_equal(found[name], expected[name], name)
+    check_that_nobody_waits(reader)
+    check_a_source_that_gives_fixed_parts(processes)
+    print(f"the same with {processes} processes")
+
+
+def main():
+    task, plugin, volume, *port = sys.argv[1:]
+    if port:
+        simple.Connect("localhost", int(port[0]))
+        simple.LoadPlugin(plugin, remote=True, ns=vars(simple))
+    simple.LoadPlugin(plugin, remote=False, ns=vars(simple))
+    if task == "write":
+        write_volumes(volume)
+    reader = simple.XMLImageDataReader(FileName=[volume])
+    on_cells = simple.XMLImageDataReader(FileName=[volume + ".cells.vti"])
+    if task == "write":
+        np.savez(volume + ".npz", **run_all(reader, on_cells))
+    else:
+        processes = servermanager.ActiveConnection.GetNumberOfDataPartitions()
+        check(reader, on_cells, np.load(volume + ".npz"), processes)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) == 2:
-        write(sys.argv[1])
-    else:
-        check(sys.argv[2], sys.argv[1])
+    main()

@@ -1,0 +1,264 @@
+#include "Pieces.h"
+
+#include "SegmentationVolume.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkMatrix3x3.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStructuredData.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace
+{
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+constexpr int first = 0;
+
+vtkMultiProcessController* Controller()
+{
+  return vtkMultiProcessController::GetGlobalController();
+}
+
+/** What the processes tell each other about their piece; numbers only, to be sent as they are. */
+struct Header
+{
+  double Extent[6];
+  /** What the source says that all pieces together are. */
+  double Whole[6];
+  double Spacing[3];
+  double Origin[3];
+  double Direction[9];
+  double Association;
+  /** VTK_VOID where the piece is empty. */
+  double DataType;
+
+  bool IsEmpty() const { return this->DataType == VTK_VOID; }
+  bool OnCells() const { return this->Association == vtkDataObject::FIELD_ASSOCIATION_CELLS; }
+  bool FitsTo(const Header& other) const
+  {
+    return this->Association == other.Association && this->DataType == other.DataType &&
+      std::equal(this->Whole, this->Whole + 6, other.Whole);
+  }
+};
+constexpr vtkIdType headerLength = sizeof(Header) / sizeof(double);
+/** MPI counts what it gathers in the type int. */
+constexpr vtkIdType mostValues = VTK_INT_MAX;
+
+Header Describe(vtkInformation* source, vtkImageData* piece, const ChosenArray& chosen)
+{
+  Header header{};
+  const bool isTold = source->Has(Pipeline::WHOLE_EXTENT());
+  std::copy_n(isTold ? source->Get(Pipeline::WHOLE_EXTENT()) : piece->GetExtent(), 6, header.Whole);
+  vtkDataArray* labels = chosen.Labels();
+  header.Association = chosen.Association;
+  header.DataType = labels && labels->GetNumberOfTuples() > 0 ? labels->GetDataType() : VTK_VOID;
+  std::copy_n(piece->GetExtent(), 6, header.Extent);
+  std::copy_n(piece->GetSpacing(), 3, header.Spacing);
+  std::copy_n(piece->GetOrigin(), 3, header.Origin);
+  std::copy_n(piece->GetDirectionMatrix()->GetData(), 9, header.Direction);
+  return header;
+}
+
+std::vector<Header> GatherHeaders(const Header& own)
+{
+  std::vector<Header> headers(static_cast<size_t>(Controller()->GetNumberOfProcesses()));
+  Controller()->AllGather(
+    reinterpret_cast<const double*>(&own), reinterpret_cast<double*>(headers.data()), headerLength);
+  headers.erase(std::remove_if(headers.begin(), headers.end(),
+                  [](const Header& header) { return header.IsEmpty(); }),
+    headers.end());
+  return headers;
+}
+
+/** The extent in which the array's values are counted: cells lie between points. */
+void ValueExtent(const Header& header, const int points[6], int values[6])
+{
+  std::copy_n(points, 6, values);
+  for (int axis = 0; header.OnCells() && axis < 3; ++axis)
+  {
+    values[2 * axis + 1] = std::max(points[2 * axis], points[2 * axis + 1] - 1);
+  }
+}
+
+vtkIdType Size(const int extent[6])
+{
+  return vtkIdType(extent[1] - extent[0] + 1) * (extent[3] - extent[2] + 1) *
+    (extent[5] - extent[4] + 1);
+}
+
+/** Copies the values of one piece, which begin at `start` in `received`, to their place. */
+vtkIdType Place(const Header& header, const int whole[6], vtkDataArray* received, vtkIdType start,
+  vtkDataArray* joined)
+{
+  int points[6];
+  int own[6];
+  std::copy_n(header.Extent, 6, points);
+  ValueExtent(header, points, own);
+  const vtkIdType row = own[1] - own[0] + 1;
+  for (int z = own[4]; z <= own[5]; ++z)
+  {
+    for (int y = own[2]; y <= own[3]; ++y)
+    {
+      const int at[3] = { own[0], y, z };
+      joined->InsertTuples(
+        vtkStructuredData::ComputePointIdForExtent(whole, at), row, start, received);
+      start += row;
+    }
+  }
+  return start;
+}
+
+/** Whether the pieces lie in `whole` and are, taken together, as many cells. */
+bool FillWhole(const std::vector<Header>& headers, const int whole[6])
+{
+  Header cells = headers.front();
+  cells.Association = vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  vtkIdType count = 0;
+  int extent[6];
+  for (const Header& header : headers)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (header.Extent[2 * axis] < whole[2 * axis] ||
+        header.Extent[2 * axis + 1] > whole[2 * axis + 1])
+      {
+        return false;
+      }
+    }
+    int points[6];
+    std::copy_n(header.Extent, 6, points);
+    ValueExtent(cells, points, extent);
+    count += Size(extent);
+  }
+  ValueExtent(cells, whole, extent);
+  return count >= Size(extent);
+}
+
+void CheckFit(const std::vector<Header>& headers, const int whole[6])
+{
+  const auto fits = [&headers](const Header& header) { return header.FitsTo(headers.front()); };
+  if (!std::all_of(headers.begin(), headers.end(), fits) || !FillWhole(headers, whole))
+  {
+    throw std::runtime_error(
+      "The segmentation is spread over several processes, whose parts do not "
+      "make up one image: save it to a file and open that.");
+  }
+  if (Size(whole) > mostValues)
+  {
+    throw std::runtime_error("The segmentation has " + std::to_string(Size(whole)) +
+      " voxels; spread over several processes it may have " + std::to_string(mostValues) +
+      " at most. Run with one process.");
+  }
+}
+
+vtkSmartPointer<vtkDataArray> MakeArray(const Header& header, const char* name)
+{
+  auto array = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(static_cast<int>(header.DataType)));
+  array->SetName(name);
+  return array;
+}
+
+vtkSmartPointer<vtkImageData> MakeImage(const Header& header, const int whole[6])
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(const_cast<int*>(whole));
+  image->SetSpacing(header.Spacing);
+  image->SetOrigin(header.Origin);
+  image->SetDirectionMatrix(header.Direction);
+  return image;
+}
+} // namespace
+
+//------------------------------------------------------------------------------
+bool Pieces::AreMany(vtkInformation* output)
+{
+  return output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+}
+
+//------------------------------------------------------------------------------
+bool Pieces::AreShared(vtkInformation* output)
+{
+  return Pieces::AreMany(output) && Controller() &&
+    Controller()->GetNumberOfProcesses() == output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+}
+
+//------------------------------------------------------------------------------
+bool Pieces::IsFirst(vtkInformation* output)
+{
+  return output->Get(Pipeline::UPDATE_PIECE_NUMBER()) <= first;
+}
+
+//------------------------------------------------------------------------------
+int Pieces::Result(vtkInformation* output, int result)
+{
+  return Pieces::AreMany(output) ? 1 : result;
+}
+
+//------------------------------------------------------------------------------
+void Pieces::CheckInput(vtkInformation* output, vtkDataSet* input)
+{
+  const int own = !Pieces::IsFirst(output) && input && input->GetNumberOfCells() > 0 ? 1 : 0;
+  int any = own;
+  if (Pieces::AreShared(output))
+  {
+    Controller()->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
+  }
+  if (any)
+  {
+    throw std::runtime_error(
+      "The input is spread over several processes, but this filter needs all "
+      "of it in the first: save it to one file and open that.");
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageData> Pieces::Join(
+  vtkInformation* source, vtkImageData* piece, const ChosenArray& chosen, bool everywhere)
+{
+  const Header own = Describe(source, piece, chosen);
+  const std::vector<Header> headers = GatherHeaders(own);
+  if (headers.empty())
+  {
+    return nullptr;
+  }
+  int whole[6];
+  std::copy_n(headers.front().Whole, 6, whole);
+  CheckFit(headers, whole);
+  const char* name = own.IsEmpty() ? chosen.Name.c_str() : chosen.Array->GetName();
+  auto empty = MakeArray(headers.front(), nullptr);
+  auto received = MakeArray(headers.front(), nullptr);
+  vtkDataArray* sent = own.IsEmpty() ? empty.Get() : chosen.Labels();
+  const bool isReceiver = everywhere || Controller()->GetLocalProcessId() == first;
+  if (everywhere ? !Controller()->AllGatherV(sent, received)
+                 : !Controller()->GatherV(sent, received, first))
+  {
+    throw std::runtime_error("The processes could not send each other their parts.");
+  }
+  if (!isReceiver)
+  {
+    return nullptr;
+  }
+  auto image = MakeImage(headers.front(), whole);
+  auto joined = MakeArray(headers.front(), name);
+  int values[6];
+  ValueExtent(headers.front(), whole, values);
+  joined->SetNumberOfTuples(Size(values));
+  vtkIdType start = 0;
+  for (const Header& header : headers)
+  {
+    start = Place(header, values, received, start, joined);
+  }
+  image->GetAttributes(static_cast<int>(headers.front().Association))->SetScalars(joined);
+  return image;
+}

@@ -1,0 +1,46 @@
+#ifndef Pieces_h
+#define Pieces_h
+
+#include "vtkSmartPointer.h"
+
+class vtkDataSet;
+class vtkImageData;
+class vtkInformation;
+struct ChosenArray;
+
+/**
+ * Who works where the pipeline is updated in pieces, one a process. A surface within a part depends
+ * on what lies around it: the first process works on all of the input, and the others wait. All
+ * processes have to call these functions at once.
+ */
+namespace Pieces
+{
+/** Whether the output that `output` describes is asked for in pieces. */
+bool AreMany(vtkInformation* output);
+
+/** Whether the pieces are asked for by as many processes, which can send each other theirs. */
+bool AreShared(vtkInformation* output);
+
+/** Whether the piece asked for is the first, or the only one. */
+bool IsFirst(vtkInformation* output);
+
+/**
+ * What RequestData has to return after a run that ended with `result`: where one process stops,
+ * others further down the pipeline may wait for it, so its message has to do and all go on.
+ */
+int Result(vtkInformation* output, int result);
+
+/** @throws std::runtime_error in all processes where another than the first has cells. */
+void CheckInput(vtkInformation* output, vtkDataSet* input);
+
+/**
+ * The array `chosen` of all pieces in an image of its own; null where all pieces lack it. `piece`
+ * may be empty, and comes from `source`. Without `everywhere` only the first process gets the
+ * image.
+ * @throws std::runtime_error in all processes where the pieces do not fit together.
+ */
+vtkSmartPointer<vtkImageData> Join(
+  vtkInformation* source, vtkImageData* piece, const ChosenArray& chosen, bool everywhere);
+} // namespace Pieces
+
+#endif
