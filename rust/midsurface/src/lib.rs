@@ -80,6 +80,7 @@ mod thickness;
 mod trace;
 mod trim;
 mod volume;
+mod weld;
 mod zipper;
 
 use std::collections::BTreeSet;

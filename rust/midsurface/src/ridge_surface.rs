@@ -3,8 +3,8 @@
 //! Batch by batch: how thick the label is (`scale.rs`), its profile under a Gaussian as wide
 //! (`profile.rs`), the sheets at its crest (`crest.rs`) and on to beyond the rims (`extension.rs`),
 //! a surface through them (`contour.rs`), wound the same way (`manifold.rs`), cut at the rims
-//! (`rim.rs`, `trim.rs`) and rid of scraps (`scraps.rs`), moved midway between both faces
-//! (`midway.rs`) and remeshed (`remesh`). How much of the progress a stage is given is how long it
+//! (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers (`weld.rs`), moved midway between
+//! both faces (`midway.rs`) and remeshed (`remesh`). How much of the progress a stage is given is how long it
 //! took on the membranes of real cells.
 
 use crate::bricks::Batch;
@@ -30,6 +30,7 @@ use crate::sheet::Sheet;
 use crate::terraces::{self, flatten_terraces, LineOfPoint};
 use crate::thickness::View;
 use crate::trim::trim;
+use crate::weld::weld;
 
 /// The edge length by default, in units of the finest spacing (the paper's step).
 const EDGE_LENGTH: f64 = std::f64::consts::SQRT_2;
@@ -195,6 +196,7 @@ fn cut_surface(
     let at_points = values(batch, &surface, &fraction, h, execution)?;
     trim(&mut surface, &at_points)?;
     drop_scraps(&mut surface);
+    weld(&mut surface)?;
     execution.pass_done()?;
     Ok((surface.compact()?, fraction))
 }

@@ -1,0 +1,190 @@
+//! Surface → surface without short edges: points that nearly coincide become one.
+//!
+//! Where a sheet passes close by a voxel, cubes around it have corners that all but coincide, with
+//! slivers between them whose normals say nothing. Whatever comes later relies on normals, so their
+//! short edges are drawn together, the shortest first. The link condition (Dey et al. 1999) keeps
+//! the topology, and no triangle may turn over; an edge for which either fails stays.
+
+use crate::error::{reserved, zeros, Result};
+use crate::grid::{along, cross, dot, length, squared_distance, sub, Vec3};
+use crate::halfedge::{ends, next, Fans, NONE};
+use crate::manifold::Surface;
+
+/// Edges shorter than this are drawn together, work units.
+const SHORT: f64 = 0.25;
+/// Rounds; in each one edges are taken that have no triangle in common.
+const ROUNDS: usize = 6;
+/// A triangle turns no farther than this cosine away from the surface around.
+const TURNED: f64 = 0.3;
+
+/// Draws the short edges of a consistently wound 2-manifold together.
+pub(crate) fn weld(surface: &mut Surface) -> Result<()> {
+    for _ in 0..ROUNDS {
+        let fans = Fans::new(&surface.triangles, surface.points.len());
+        let twins = fans.twins(&surface.triangles);
+        let mut border: Vec<bool> = zeros(surface.points.len())?;
+        for e in (0..twins.len() as u32).filter(|&e| twins[e as usize] == NONE) {
+            let (a, b) = ends(&surface.triangles, e);
+            (border[a as usize], border[b as usize]) = (true, true);
+        }
+        let pairs = pairs(surface, &fans, &twins, &border)?;
+        if pairs.is_empty() {
+            break;
+        }
+        let mut into: Vec<u32> = reserved(surface.points.len())?;
+        into.extend(0..surface.points.len() as u32);
+        for (from, to, place) in pairs {
+            into[from as usize] = to;
+            surface.points[to as usize] = place;
+        }
+        for p in surface.triangles.iter_mut().flatten() {
+            *p = into[*p as usize];
+        }
+        surface
+            .triangles
+            .retain(|[a, b, c]| a != b && b != c && c != a);
+    }
+    Ok(())
+}
+
+/// Points to be drawn into others and where to, none of them near another's triangles.
+fn pairs(
+    surface: &Surface,
+    fans: &Fans,
+    twins: &[u32],
+    border: &[bool],
+) -> Result<Vec<(u32, u32, Vec3)>> {
+    let mut short: Vec<(f64, u32)> = Vec::new();
+    for e in 0..twins.len() as u32 {
+        let twin = twins[e as usize];
+        let (a, b) = ends(&surface.triangles, e);
+        let squared = squared_distance(surface.points[a as usize], surface.points[b as usize]);
+        if squared < SHORT * SHORT && (twin == NONE || e < twin) {
+            short.push((squared, e));
+        }
+    }
+    short.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut taken: Vec<bool> = zeros(surface.points.len())?;
+    let mut pairs = Vec::new();
+    for (_, e) in short {
+        let (a, b) = ends(&surface.triangles, e);
+        let around = || {
+            let triangles = fans.of(a).iter().chain(fans.of(b));
+            triangles.flat_map(|&f| surface.triangles[f as usize / 3])
+        };
+        if around().any(|p| taken[p as usize]) || !keeps_topology(surface, fans, twins, border, e) {
+            continue;
+        }
+        // A point of the boundary stays on it.
+        let (from, to) = if border[b as usize] { (a, b) } else { (b, a) };
+        let [p, q] = [from, to].map(|p| surface.points[p as usize]);
+        let place = match border[from as usize] == border[to as usize] {
+            true => along(p, 0.5, sub(q, p)),
+            false => q,
+        };
+        if keeps_shape(surface, fans, [from, to], place) {
+            around().for_each(|p| taken[p as usize] = true);
+            pairs.push((from, to, place));
+        }
+    }
+    Ok(pairs)
+}
+
+/// Whether the surface's topology allows the edge of e to be drawn together.
+fn keeps_topology(surface: &Surface, fans: &Fans, twins: &[u32], border: &[bool], e: u32) -> bool {
+    let (a, b) = ends(&surface.triangles, e);
+    let sides = [e, twins[e as usize]];
+    let sides = || sides.into_iter().filter(|&f| f != NONE);
+    if sides().count() == 2 && border[a as usize] && border[b as usize] {
+        return false;
+    }
+    let opposite = |f: u32| ends(&surface.triangles, next(f)).1;
+    let enough = |c: u32| fans.of(c).len() > if border[c as usize] { 1 } else { 3 };
+    let neighbours = |p: u32| {
+        let corners = fans.of(p).iter();
+        let mut all: Vec<u32> = corners
+            .flat_map(|&f| surface.triangles[f as usize / 3])
+            .filter(|&q| q != p)
+            .collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    };
+    let others = neighbours(b);
+    let common = neighbours(a)
+        .iter()
+        .filter(|p| others.binary_search(p).is_ok())
+        .count();
+    common == sides().count() && sides().all(|f| enough(opposite(f)))
+}
+
+/// Whether the triangles around two points face as the surface does if both points are at `place`.
+fn keeps_shape(surface: &Surface, fans: &Fans, points: [u32; 2], place: Vec3) -> bool {
+    let triangles = || {
+        let around = points.iter().flat_map(|&p| fans.of(p));
+        around.map(|&f| surface.triangles[f as usize / 3])
+    };
+    let twice_area = |t: [Vec3; 3]| cross(sub(t[1], t[0]), sub(t[2], t[0]));
+    let facing = triangles().fold([0.0; 3], |sum, t| {
+        along(sum, 1.0, twice_area(t.map(|p| surface.points[p as usize])))
+    });
+    let stays = |t: &[u32; 3]| !(t.contains(&points[0]) && t.contains(&points[1]));
+    triangles().filter(stays).all(|t| {
+        let moved = twice_area(t.map(|p| match points.contains(&p) {
+            true => place,
+            false => surface.points[p as usize],
+        }));
+        dot(moved, facing) > TURNED * length(moved) * length(facing)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A lattice of squares, each cut in two, on a plane or bent to a closed ring.
+    fn lattice(columns: u32, rows: u32, place: impl Fn(u32, u32) -> Vec3) -> Surface {
+        let at = |i: u32, j: u32| j * (columns + 1) + i;
+        let mut triangles = Vec::new();
+        for j in 0..rows {
+            for i in 0..columns {
+                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+        let points = (0..=rows).flat_map(|j| (0..=columns).map(move |i| (i, j)));
+        let points: Vec<Vec3> = points.map(|(i, j)| place(i, j)).collect();
+        let source = vec![0; points.len()];
+        Surface {
+            points,
+            triangles,
+            source,
+        }
+    }
+
+    #[test]
+    fn points_that_nearly_coincide_become_one() {
+        let mut surface = lattice(4, 4, |i, j| [f64::from(i), f64::from(j), 0.0]);
+        // The middle point and its neighbour, and two points of the boundary.
+        surface.points[12] = [2.9, 2.0, 0.0];
+        surface.points[1] = [1.95, 0.0, 0.0];
+        let before = surface.triangles.len();
+        weld(&mut surface).unwrap();
+        assert_eq!(surface.triangles.len(), before - 2 - 1);
+        let corners = surface.triangles.iter().flatten();
+        let on_boundary = |p: &&u32| surface.points[**p as usize][1] == 0.0;
+        let mut boundary: Vec<u32> = corners.filter(on_boundary).copied().collect();
+        boundary.sort_unstable();
+        boundary.dedup();
+        assert_eq!(boundary.len(), 4);
+    }
+
+    #[test]
+    fn a_narrow_neck_is_not_drawn_together() {
+        // Both ends of its short edges lie on the boundary.
+        let mut surface = lattice(6, 1, |i, j| [f64::from(i), 0.1 * f64::from(j), 0.0]);
+        weld(&mut surface).unwrap();
+        // At its two ends it may get shorter by a triangle.
+        assert!(surface.triangles.len() >= 12 - 2);
+    }
+}
