@@ -84,8 +84,7 @@ struct Cells {
     offset: Vec<u32>,
     /// Number of the brick's first point.
     first: u32,
-    /// Crossed edges of the brick's own voxels: voxel and axis, and whether the sheet's normal, as
-    /// the voxel has it, points along the axis.
+    /// Crossed edges of the brick's own voxels: the voxel each starts from, and its axis.
     crossed: Vec<(u16, u8)>,
 }
 

@@ -8,7 +8,7 @@
 //! those of their core neighbours (`extension.rs`).
 
 use crate::block::Block;
-use crate::bricks::{Batch, BRICK, EDGE, LAYER};
+use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
 use crate::eigen::{eigenvalues, eigenvector};
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
@@ -21,49 +21,37 @@ use crate::sheet::{dot, source, unshrink, Sheet, ENTRIES, TRUSTED};
 const TANGENTIAL: f32 = 0.6;
 /// and is curved within the sheet by at most this share of its curvature across.
 const BENT: f32 = 0.35;
-/// Standard deviation ρ of the tensors' smoothing, in σ, and its bounds in work units.
-const RHO: f32 = 1.0;
+/// Bounds of the standard deviation ρ of the tensors' smoothing, which is σ, in work units.
 const RHO_BOUNDS: [f32; 2] = [1.2, 3.4];
 /// Kernels of ρ are made at steps of this ratio.
 const RHO_STEP: f32 = 1.1892;
 /// A border of the volume cuts a sheet's profile within this many σ, along the normal.
 const REACH: f32 = 2.3;
-/// Offsets beyond this are of no use to a contour, in the coarsest spacing.
-const FARTHEST: f32 = 2.0;
 
 /// Passes over all bricks that [`core_sheets`] makes, for its progress.
 pub(crate) const PASSES: usize = 5 + separable::PASSES;
 
-/// The sheets of the core voxels of a batch.
+/// The sheets of the core voxels of a batch, with offsets of up to `farthest`.
 pub(crate) fn core_sheets(
     batch: &Batch,
     profile: &Profile,
     distance: &[f32],
+    farthest: f32,
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<Vec<Sheet>> {
     let bricks = batch.part_of_brick.len();
-    let sigma = execution.collect(bricks, |brick| middle_sigma(profile, batch, brick))?;
-    let all_distances = distance;
+    let sigma = execution.collect(bricks, |brick| mean_sigma(profile, batch, brick))?;
+    let border = |brick: usize| Border::near(batch, brick, distance, REACH * sigma[brick], h);
     let tensors = execution.collect(bricks, |brick| {
-        let distance = &distance[brick * BRICK..][..BRICK];
-        if distance.iter().all(|d| *d == 0.0) {
+        let own = &distance[brick * BRICK..][..BRICK];
+        if own.iter().all(|d| *d == 0.0) {
             return [0.0; ENTRIES * BRICK];
         }
-        let border = Border {
-            batch,
-            brick,
-            distance: all_distances,
-            h,
-        };
-        let cut = |i: usize, n: [f32; 3]| {
-            border.is_near(4.0 * REACH * sigma[brick])
-                && border.cuts(i, n.map(f64::from), REACH * sigma[brick])
-        };
-        tensors(&profile.derivatives(batch, brick, h), distance, cut)
+        let border = border(brick);
+        tensors(&profile.derivatives(batch, brick, h), own, border.as_ref())
     })?;
     let tensors = smooth_tensors(batch, &sigma, tensors.into_flattened(), h, execution)?;
-    let farthest = FARTHEST * h.iter().copied().fold(1.0, f64::max) as f32;
     let sheets = execution.collect(bricks, |brick| {
         let near = Block::gather(batch, brick, distance);
         if near.values.iter().all(|d| *d == 0.0) {
@@ -72,16 +60,9 @@ pub(crate) fn core_sheets(
         let tensors = &tensors[brick * BRICK * ENTRIES..][..BRICK * ENTRIES];
         let derivatives = profile.derivatives(batch, brick, h);
         let mut sheets = sheets_of_brick(&derivatives, tensors, &near.largest_near(), farthest);
-        let border = Border {
-            batch,
-            brick,
-            distance,
-            h,
-        };
-        if border.is_near(4.0 * REACH * sigma[brick]) {
+        if let Some(border) = border(brick) {
             for (i, sheet) in sheets.iter_mut().enumerate() {
-                let [x, y, z, _] = *sheet;
-                if border.cuts(i, [x, y, z].map(f64::from), REACH * sigma[brick]) {
+                if border.cuts(i, [sheet[0], sheet[1], sheet[2]]) {
                     *sheet = Sheet::default();
                 }
             }
@@ -94,8 +75,8 @@ pub(crate) fn core_sheets(
     Ok(sheets)
 }
 
-/// σ in the middle of a brick, or of its nearest voxel that has one.
-fn middle_sigma(profile: &Profile, batch: &Batch, brick: usize) -> f32 {
+/// Mean σ of a brick's voxels that have one; 0 where none has.
+fn mean_sigma(profile: &Profile, batch: &Batch, brick: usize) -> f32 {
     let sigma = profile.sigma(batch, brick);
     let (sum, count) = sigma
         .iter()
@@ -110,27 +91,45 @@ fn middle_sigma(profile: &Profile, batch: &Batch, brick: usize) -> f32 {
 
 /// The borders of the volume as seen from a brick.
 struct Border<'a> {
-    batch: &'a Batch<'a>,
-    brick: usize,
+    directory: &'a Directory,
+    place: [usize; 3],
     distance: &'a [f32],
+    /// How near by a border cuts the profile of a sheet at right angles to it, work units.
+    reach: f32,
     h: Vec3,
 }
 
-impl Border<'_> {
-    /// Whether a border is within `reach` work units of the brick.
-    fn is_near(&self, reach: f32) -> bool {
-        let (directory, place) = self.batch.brick(self.brick);
-        (0..3).any(|a| {
-            let first = (place[a] * EDGE) as f64 * self.h[a];
-            let last = (directory.dimensions[a] as f64 - 1.0) * self.h[a];
-            first.min(last - first - EDGE as f64 * self.h[a]) < f64::from(reach)
+impl<'a> Border<'a> {
+    /// `None` where no border is near enough to cut a sheet of the brick.
+    fn near(
+        batch: &'a Batch,
+        brick: usize,
+        distance: &'a [f32],
+        reach: f32,
+        h: Vec3,
+    ) -> Option<Self> {
+        let (directory, place) = batch.brick(brick);
+        let is_near = (0..3).any(|a| {
+            let first = (place[a] * EDGE) as f64 * h[a];
+            let last = (directory.dimensions[a] as f64 - 1.0) * h[a];
+            first.min(last - first - EDGE as f64 * h[a]) < f64::from(4.0 * reach)
+        });
+        is_near.then_some(Self {
+            directory,
+            place,
+            distance,
+            reach,
+            h,
         })
     }
 
     /// Whether the sheet through voxel i with normal n leaves the volume so near by that the profile
     /// misses a part of it: along a sheet at right angles to the border nothing is missed.
-    fn cuts(&self, i: usize, n: Vec3, reach: f32) -> bool {
-        let (directory, place) = self.batch.brick(self.brick);
+    fn cuts(&self, i: usize, n: [f32; 3]) -> bool {
+        let Self {
+            directory, place, ..
+        } = self;
+        let n = n.map(f64::from);
         let within = [i % EDGE, i / EDGE % EDGE, i / LAYER];
         let length = dot3(n, n).sqrt();
         let n = n.map(|v| v / length.max(1e-12));
@@ -142,13 +141,13 @@ impl Border<'_> {
             } else {
                 (last - p[a], 1.0)
             };
-            if to_border >= f64::from(reach) * n[a].abs() {
+            if to_border >= f64::from(self.reach) * n[a].abs() {
                 return false;
             }
             // From here along the sheet to the border: is the label still there?
             let slope = 1.0 - n[a] * n[a];
             let steps = to_border / slope.max(1e-12);
-            if steps * slope.sqrt() > 2.0 * f64::from(reach) {
+            if steps * slope.sqrt() > 2.0 * f64::from(self.reach) {
                 return false;
             }
             let voxel = std::array::from_fn(|b| {
@@ -169,11 +168,12 @@ fn entry(k: usize, z: usize) -> std::ops::Range<usize> {
     first..first + LAYER
 }
 
-/// The tensors of a brick's voxels before smoothing, weighted; zero outside the label.
+/// The tensors of a brick's voxels before smoothing, weighted; zero outside the label and where a
+/// border cuts the profile.
 fn tensors(
     layers: &[Derivatives],
     distance: &[f32],
-    cut: impl Fn(usize, [f32; 3]) -> bool,
+    border: Option<&Border>,
 ) -> [f32; ENTRIES * BRICK] {
     let mut tensors = [0.0; ENTRIES * BRICK];
     for (z, (layer, distance)) in layers.iter().zip(distance.chunks_exact(LAYER)).enumerate() {
@@ -185,7 +185,8 @@ fn tensors(
             // Relative to σ, so that a thick sheet does not outshout a thin one beside it.
             let hessian = layer.hessian.each_ref().map(|entry| entry[i]);
             let e = source(hessian, distance[i] / layer.sigma[i]);
-            let e = if cut(z * LAYER + i, e) { [0.0; 3] } else { e };
+            let is_cut = border.is_some_and(|border| border.cuts(z * LAYER + i, e));
+            let e = if is_cut { [0.0; 3] } else { e };
             let trust = trust(layer, i, e);
             let e = e.map(|v| v * trust);
             let zz = e[2] * e[2];
@@ -237,7 +238,7 @@ fn smooth_tensors(
         })
         .collect();
     let kernel_of = |brick: usize| {
-        let rho = (RHO * sigma[brick]).clamp(least, most);
+        let rho = sigma[brick].clamp(least, most);
         let step = ((rho / least).log2() / RHO_STEP.log2()).round();
         Some(&kernels[step as usize])
     };

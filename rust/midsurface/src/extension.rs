@@ -4,15 +4,13 @@
 //! next to it do: a sheet runs straight on. Ring by ring, an unknown voxel takes the mean of what
 //! its known neighbours say, each by its own normal and offset.
 
-use crate::block::Block;
+use crate::block::{row, Block, SIDE};
 use crate::bricks::{Batch, BRICK, EDGE};
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::sheet::{dot, Sheet};
 
-/// Voxels along a block's edge.
-const SIDE: usize = crate::block::SIDE;
 /// Neighbours that say the same: normals within this cosine, offsets within this many work units.
 const ALIKE: f32 = 0.7;
 const NEAR: f32 = 0.75;
@@ -73,7 +71,7 @@ fn ring(known: &Block<Sheet>, near: &[f32; BRICK], farthest: f32, h: Vec3) -> Ve
         return learnt;
     }
     for (i, near) in near.iter().enumerate() {
-        let at = crate::block::row(i / EDGE % EDGE, i / EDGE / EDGE) + i % EDGE;
+        let at = row(i / EDGE % EDGE, i / EDGE / EDGE) + i % EDGE;
         if *near > 0.0 && known.values[at] == Sheet::default() {
             if let Some(sheet) = continued(known, at, h) {
                 if sheet[3].abs() <= farthest {

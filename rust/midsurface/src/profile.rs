@@ -35,10 +35,9 @@ pub(crate) struct Profile {
     half_thickness: HalfThickness,
 }
 
-/// Value of the smoothed mask, and first and second derivatives of its logarithm, in one layer of a
-/// brick; σ is the scale they are of. Where the value is 0 all are.
+/// First and second derivatives of the smoothed mask's logarithm in one layer of a brick, 0 where
+/// the mask is; σ is the scale they are of.
 pub(crate) struct Derivatives {
-    pub value: Layer,
     pub gradient: [Layer; 3],
     pub hessian: [Layer; 6],
     pub sigma: Layer,
@@ -91,7 +90,6 @@ impl Profile {
         let wanted = levels_of(&coordinate);
         let mut layers: Vec<Derivatives> = (0..EDGE)
             .map(|z| Derivatives {
-                value: [0.0; LAYER],
                 gradient: [[0.0; LAYER]; 3],
                 hessian: [[0.0; LAYER]; 6],
                 sigma: std::array::from_fn(|i| sigma(coordinate[z * LAYER + i])),
@@ -127,7 +125,6 @@ impl Derivatives {
                 (0.0, 0.0)
             };
             let g: [f32; 3] = std::array::from_fn(|k| gradient[k][i] * inverse);
-            self.value[i] += w * value[i];
             for (sum, g) in self.gradient.iter_mut().zip(g) {
                 sum[i] += w * g;
             }

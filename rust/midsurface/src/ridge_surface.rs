@@ -157,19 +157,11 @@ fn find_sheets(
     execution.stage("Smoothing labels", 0.01, 0.05, 1)?;
     let profile = Profile::new(batch, distance, half_thickness, h, execution)?;
     execution.stage("Finding sheets", 0.05, 0.27, crest::PASSES)?;
-    let mut sheets = core_sheets(batch, &profile, distance, h, execution)?;
+    let farthest = (FARTHEST * h.iter().copied().fold(1.0, f64::max)) as f32;
+    let mut sheets = core_sheets(batch, &profile, distance, farthest, h, execution)?;
     drop(profile);
     execution.stage("Extending sheets", 0.27, 0.38, RINGS)?;
-    let farthest = FARTHEST * h.iter().copied().fold(1.0, f64::max);
-    extend(
-        batch,
-        distance,
-        RINGS,
-        farthest as f32,
-        h,
-        &mut sheets,
-        execution,
-    )?;
+    extend(batch, distance, RINGS, farthest, h, &mut sheets, execution)?;
     execution.stage("Settling sheets", 0.38, 0.47, SETTLINGS)?;
     for _ in 0..SETTLINGS {
         settle(batch, &mut sheets, h, execution)?;
