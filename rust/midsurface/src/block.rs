@@ -64,10 +64,21 @@ pub(crate) fn row(y: usize, z: usize) -> usize {
     ((z + 1) * SIDE + y + 1) * SIDE + 1
 }
 
-impl Block<f32> {
-    /// Continues the field linearly across the borders of the volume, the block's brick being at
+impl<T: Copy> Block<T> {
+    /// Repeats the outermost voxels across the borders of the volume, the block's brick being at
     /// `place`.
-    pub fn continue_beyond(&mut self, directory: &Directory, place: [usize; 3]) {
+    pub fn repeat_beyond(&mut self, directory: &Directory, place: [usize; 3]) {
+        self.fill_beyond(directory, place, |outermost, _| outermost);
+    }
+
+    /// Fills the voxels across the borders of the volume with `beyond` of the outermost voxel and
+    /// the one before.
+    fn fill_beyond(
+        &mut self,
+        directory: &Directory,
+        place: [usize; 3],
+        beyond: impl Fn(T, T) -> T,
+    ) {
         for axis in 0..3 {
             let stride = [1, SIDE, SIDE * SIDE][axis];
             let last = directory.dimensions[axis] - 1;
@@ -80,10 +91,20 @@ impl Block<f32> {
                     let at = a * other[0] + b * other[1] + layer * stride;
                     let step = |k: isize| (at as isize + inward * k * stride as isize) as usize;
                     let second = if last == 0 { step(1) } else { step(2) };
-                    self.values[at] = 2.0 * self.values[step(1)] - self.values[second];
+                    self.values[at] = beyond(self.values[step(1)], self.values[second]);
                 }
             }
         }
+    }
+}
+
+impl Block<f32> {
+    /// Continues the field linearly across the borders of the volume, the block's brick being at
+    /// `place`.
+    pub fn continue_beyond(&mut self, directory: &Directory, place: [usize; 3]) {
+        self.fill_beyond(directory, place, |outermost, before| {
+            2.0 * outermost - before
+        });
     }
 
     /// The largest value among each voxel of the brick and its 26 neighbours.

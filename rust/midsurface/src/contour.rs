@@ -18,15 +18,14 @@
 //! continues no other ends. Beyond the border of the volume the voxels are repeated, which makes
 //! surfaces end on the border exactly.
 
-use crate::bricks::{Batch, Directory, EDGE, LAYER};
+use crate::block::{Block, SIDE};
+use crate::bricks::{Batch, Directory, BRICK, EDGE};
 use crate::error::{reserved, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, length, sub, unit, Vec3};
 use crate::manifold::Surface;
 use crate::sheet::Sheet;
 
-/// Voxels along a brick and one on either side.
-const SIDE: usize = EDGE + 2;
 /// Steps in a block of `SIDE`³ along x, y, z.
 const STRIDE: [usize; 3] = [1, SIDE, SIDE * SIDE];
 /// Neighbouring voxels whose normals differ by more than this cosine's angle share no sheet.
@@ -53,7 +52,10 @@ pub(crate) fn contour(
     let mut surface = Surface::default();
     execution.stream(
         &bricks,
-        |&brick| Cells::new(&Block::gather(batch, brick, sheets, h)),
+        |&brick| match Crossings::find(batch, brick, sheets, h) {
+            Some(crossings) => Cells::new(&crossings),
+            None => Default::default(),
+        },
         |(mut own, points)| {
             own.first = surface.points.len() as u32;
             surface.points.extend(points);
@@ -77,6 +79,7 @@ pub(crate) fn contour(
 }
 
 /// The cubes of one brick that the surface passes, in the order of their keys.
+#[derive(Default)]
 struct Cells {
     /// Each cube's key, and for each of its twelve edges the corner it shares, four bits each.
     cubes: Vec<(u16, u64)>,
@@ -94,51 +97,46 @@ fn key(low: [usize; 3]) -> u16 {
 }
 
 impl Cells {
-    fn new(block: &Block) -> (Self, Vec<Vec3>) {
-        let mut cells = Self {
-            cubes: Vec::new(),
-            offset: Vec::new(),
-            first: 0,
-            crossed: Vec::new(),
-        };
+    fn new(crossings: &Crossings) -> (Self, Vec<Vec3>) {
+        let mut cells = Self::default();
         let mut points = Vec::new();
-        if block.crossed.iter().all(|&c| c == 0) {
+        if crossings.crossed.iter().all(|&c| c == 0) {
             return (cells, points);
         }
-        let from = block.first_cube;
-        for z in from[2]..=EDGE.min(block.last[2]) {
-            for y in from[1]..=EDGE.min(block.last[1]) {
-                for x in from[0]..=EDGE.min(block.last[0]) {
-                    cells.add_cube(block, [x, y, z], &mut points);
+        let from = crossings.first_cube;
+        for z in from[2]..=EDGE.min(crossings.last[2]) {
+            for y in from[1]..=EDGE.min(crossings.last[1]) {
+                for x in from[0]..=EDGE.min(crossings.last[0]) {
+                    cells.add_cube(crossings, [x, y, z], &mut points);
                 }
             }
         }
-        for z in 1..=EDGE.min(block.last[2]) {
-            for y in 1..=EDGE.min(block.last[1]) {
-                for x in 1..=EDGE.min(block.last[0]) {
-                    cells.add_crossed(block, [x, y, z]);
+        for z in 1..=EDGE.min(crossings.last[2]) {
+            for y in 1..=EDGE.min(crossings.last[1]) {
+                for x in 1..=EDGE.min(crossings.last[0]) {
+                    cells.add_crossed(crossings, [x, y, z]);
                 }
             }
         }
         (cells, points)
     }
 
-    fn add_cube(&mut self, block: &Block, low: [usize; 3], points: &mut Vec<Vec3>) {
+    fn add_cube(&mut self, crossings: &Crossings, low: [usize; 3], points: &mut Vec<Vec3>) {
         let base = key(low) as usize;
         let mut edges = 0u16;
         for edge in 0..12 {
             let (axis, at) = edge_of_cube(base, edge);
-            edges |= u16::from(block.crossed[at] >> axis & 1) << edge;
+            edges |= u16::from(crossings.crossed[at] >> axis & 1) << edge;
         }
         if edges == 0 {
             return;
         }
-        let corner = corners(block, base, edges);
+        let corner = corners(crossings, base, edges);
         let count = corner.iter().filter(|&&c| c != NO_CORNER).max();
         let count = count.map_or(0, |&c| c + 1);
         self.offset.push(points.len() as u32);
         for own in 0..count {
-            points.push(block.place(base, low, |edge| corner[edge] == own));
+            points.push(crossings.place(base, low, |edge| corner[edge] == own));
         }
         let packed = corner
             .iter()
@@ -147,11 +145,11 @@ impl Cells {
         self.cubes.push((base as u16, packed));
     }
 
-    fn add_crossed(&mut self, block: &Block, voxel: [usize; 3]) {
+    fn add_crossed(&mut self, crossings: &Crossings, voxel: [usize; 3]) {
         let at = key(voxel) as usize;
         for axis in 0..3 {
             // An edge that leaves the volume lies between a voxel and its copy, and is not crossed.
-            if block.crossed[at] >> axis & 1 == 1 {
+            if crossings.crossed[at] >> axis & 1 == 1 {
                 self.crossed.push((at as u16, axis as u8));
             }
         }
@@ -178,7 +176,7 @@ fn edge_of_cube(base: usize, edge: usize) -> (usize, usize) {
 
 /// Which corner of the surface each crossed edge of a cube shares: those that pairs in the cube's
 /// faces chain together have the same.
-fn corners(block: &Block, base: usize, edges: u16) -> [u8; 12] {
+fn corners(crossings: &Crossings, base: usize, edges: u16) -> [u8; 12] {
     let mut chain: [u8; 12] = std::array::from_fn(|edge| edge as u8);
     for (axis, stride) in STRIDE.into_iter().enumerate() {
         for side in 0..2 {
@@ -187,7 +185,7 @@ fn corners(block: &Block, base: usize, edges: u16) -> [u8; 12] {
             let c = 4 * ((axis + 2) % 3);
             let ring = [b + 2 * side, c + side + 2, b + 2 * side + 1, c + side];
             let crossed = ring.map(|edge| edges >> edge & 1 == 1);
-            for (i, j) in block.pairs(base + side * stride, axis, crossed) {
+            for (i, j) in crossings.pairs(base + side * stride, axis, crossed) {
                 let (from, to) = (chain[ring[i]], chain[ring[j]]);
                 chain
                     .iter_mut()
@@ -275,10 +273,10 @@ fn halves([a, b, c, d]: [u32; 4], points: &[Vec3]) -> impl Iterator<Item = [u32;
 
 /// What a brick knows of its sheets, with a voxel around it, repeated beyond the border of the
 /// volume.
-struct Block {
-    sheets: Vec<Sheet>,
+struct Crossings {
+    sheets: Block<Sheet>,
     /// Whether the edge from each voxel along x, y, z is crossed, a bit each.
-    crossed: Vec<u8>,
+    crossed: [u8; SIDE * SIDE * SIDE],
     /// First cube along each axis: one earlier at the border of the volume.
     first_cube: [usize; 3],
     /// The volume's last voxel along each axis.
@@ -288,45 +286,34 @@ struct Block {
     h: Vec3,
 }
 
-impl Block {
-    fn gather(batch: &Batch, brick: usize, field: &[Sheet], h: Vec3) -> Self {
+impl Crossings {
+    /// `None` where the brick knows no sheet.
+    fn find(batch: &Batch, brick: usize, field: &[Sheet], h: Vec3) -> Option<Self> {
+        let own = &field[brick * BRICK..][..BRICK];
+        if own.iter().all(|sheet| *sheet == Sheet::default()) {
+            return None;
+        }
         let (directory, place) = batch.brick(brick);
+        let mut sheets = Block::gather(batch, brick, field);
+        sheets.repeat_beyond(directory, place);
         let start = place.map(|p| (p * EDGE) as isize - 1);
-        let last: [usize; 3] =
-            std::array::from_fn(|a| (directory.dimensions[a] as isize - 1 - start[a]) as usize);
-        let mut block = Self {
-            sheets: Vec::new(),
-            crossed: vec![0; SIDE * SIDE * SIDE],
+        let mut crossings = Self {
+            sheets,
+            crossed: [0; SIDE * SIDE * SIDE],
             first_cube: place.map(|p| usize::from(p > 0)),
-            last,
+            last: std::array::from_fn(|a| {
+                (directory.dimensions[a] as isize - 1 - start[a]) as usize
+            }),
             start,
             h,
         };
-        let own = &field[brick * EDGE * LAYER..][..EDGE * LAYER];
-        if own.iter().all(|sheet| *sheet == Sheet::default()) {
-            return block;
-        }
-        block.sheets = vec![Sheet::default(); SIDE * SIDE * SIDE];
-        for z in 0..SIDE.min(last[2] + 2) {
-            for y in 0..SIDE.min(last[1] + 2) {
-                for x in 0..SIDE.min(last[0] + 2) {
-                    let voxel = std::array::from_fn(|a| {
-                        let v = start[a] + [x, y, z][a] as isize;
-                        v.clamp(0, directory.dimensions[a] as isize - 1)
-                    });
-                    if let Some(entry) = directory.entry_at(voxel) {
-                        block.sheets[key([x, y, z]) as usize] = field[entry];
-                    }
-                }
-            }
-        }
-        block.find_crossed();
-        block
+        crossings.find_crossed();
+        Some(crossings)
     }
 
     fn find_crossed(&mut self) {
-        for at in 0..self.sheets.len() {
-            if self.sheets[at] == Sheet::default() {
+        for at in 0..self.crossed.len() {
+            if self.sheets.values[at] == Sheet::default() {
                 continue;
             }
             let voxel = [at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE];
@@ -340,7 +327,10 @@ impl Block {
 
     /// Whether the sheet passes between a voxel and its neighbour along an axis.
     fn is_crossed(&self, at: usize, axis: usize) -> bool {
-        let (a, b) = (self.sheets[at], self.sheets[at + STRIDE[axis]]);
+        let (a, b) = (
+            self.sheets.values[at],
+            self.sheets.values[at + STRIDE[axis]],
+        );
         let alike = cosine(&a, &b);
         // −offset is the signed distance; the sign of a zero counts.
         let changes = a[3].is_sign_negative() ^ b[3].is_sign_negative() ^ (alike < 0.0);
@@ -355,7 +345,10 @@ impl Block {
 
     /// Where the sheet crosses an edge, from the block's first voxel, and its normal there.
     fn crossing(&self, at: usize, axis: usize) -> (Vec3, Vec3) {
-        let (a, b) = (&self.sheets[at], &self.sheets[at + STRIDE[axis]]);
+        let (a, b) = (
+            &self.sheets.values[at],
+            &self.sheets.values[at + STRIDE[axis]],
+        );
         let turn = cosine(a, b).signum();
         let (from, to) = (f64::from(a[3]), f64::from(turn * b[3]));
         let t = if from == to { 0.5 } else { from / (from - to) };
@@ -463,7 +456,7 @@ impl Block {
     /// Signed distance of a point from the sheet of a voxel, along `normal`. The mean of both
     /// normals makes it exact to second order.
     fn distance_from(&self, at: usize, p: Vec3, normal: Vec3) -> f64 {
-        let [x, y, z, offset] = self.sheets[at].map(f64::from);
+        let [x, y, z, offset] = self.sheets.values[at].map(f64::from);
         let own = [x, y, z];
         let turn = if dot(own, normal) < 0.0 { -1.0 } else { 1.0 };
         let d = sub(p, self.position(at));

@@ -128,12 +128,11 @@ fn within_volume(p: Vec3, n: Vec3, off: f64, last: Vec3) -> Vec3 {
 
 /// Mean over a point and its neighbours; those within the surface count twice, as does the point.
 fn mean(seen: &[Seen], fans: &Fans, triangles: &[[u32; 3]], p: usize) -> Seen {
-    let mut sum = seen[p].map(|v| 2.0 * v);
-    let mut count = 2.0;
-    for q in fans.neighbours(triangles, p as u32) {
-        sum[0] += seen[q as usize][0];
-        sum[1] += seen[q as usize][1];
-        count += 1.0;
-    }
-    sum.map(|v| v / count)
+    let own = seen[p].map(|v| 2.0 * v);
+    let neighbours = fans.neighbours(triangles, p as u32);
+    let ([off, weight], count) = neighbours.fold((own, 2.0), |([off, weight], count), q| {
+        let [next_off, next_weight] = seen[q as usize];
+        ([off + next_off, weight + next_weight], count + 1.0)
+    });
+    [off / count, weight / count]
 }
