@@ -143,8 +143,8 @@ pub fn extract(volume: &Volume, options: &Options, observer: &mut dyn Observer) 
     match options.method {
         Method::PolylineZipper => {
             let mut execution = Execution::new(options.threads, observer)?;
-            let polylines = trace_polylines(volume, options, &mut execution, 0.7)?;
-            zip(&polylines, &mut execution, 0.7)
+            let polylines = trace_polylines(volume, options, &mut execution, TRACING)?;
+            zip(&polylines, &mut execution)
         }
         Method::RidgeSurface => {
             let mut execution = Execution::new(options.threads, observer)?;
@@ -182,7 +182,7 @@ pub fn ridge_field(
 ) -> Result<()> {
     let mut execution = Execution::new(options.threads, observer)?;
     let unit = volume.grid.unit() as f32;
-    for_each_batch(
+    for_each_ridge_field(
         volume,
         options,
         &mut execution,
@@ -226,7 +226,7 @@ pub fn zip_polylines(
 ) -> Result<Mesh> {
     polylines.check()?;
     let mut execution = Execution::new(options.threads, observer)?;
-    zip(polylines, &mut execution, 0.0)
+    zip(polylines, &mut execution)
 }
 
 fn trace_polylines(
@@ -237,7 +237,7 @@ fn trace_polylines(
 ) -> Result<Polylines> {
     let mut polylines = Polylines::default();
     let mut disks = 0;
-    for_each_batch(
+    for_each_ridge_field(
         volume,
         options,
         execution,
@@ -263,24 +263,16 @@ fn find_ridge_surface(
     execution: &mut Execution,
 ) -> Result<Mesh> {
     let mut mesh = Mesh::default();
-    execution.stage("Reading labels", 0.0, 0.15, 2)?;
-    let all_parts = read_parts(volume, options, execution)?;
-    let total: usize = all_parts.iter().map(Part::voxels).sum();
-    let mut done = 0;
-    for parts in batches(&all_parts) {
-        let share = |voxels: usize| 0.15 + 0.85 * voxels as f64 / total as f64;
-        let voxels: usize = parts.iter().map(Part::voxels).sum();
-        execution.within(share(done), share(done + voxels));
+    let parts = for_each_batch(volume, options, execution, 1.0, |parts, execution| {
         ridge_surface::ridge_surface(
             parts,
             &volume.grid,
             options.edge_length,
             &mut mesh,
             execution,
-        )?;
-        done += voxels;
-    }
-    if mesh.triangles.is_empty() && !all_parts.is_empty() {
+        )
+    })?;
+    if mesh.triangles.is_empty() && parts > 0 {
         execution.warning("there is no surface: the labels hold no sheet that could be followed");
     }
     warn_if_far(&mesh, execution);
@@ -288,16 +280,12 @@ fn find_ridge_surface(
     Ok(mesh)
 }
 
-fn zip(polylines: &Polylines, execution: &mut Execution, from: f64) -> Result<Mesh> {
+/// Takes what is left of the progress.
+fn zip(polylines: &Polylines, execution: &mut Execution) -> Result<Mesh> {
     let polylines = &*polylines.without_repeats();
-    execution.stage("Zipping polylines", from, from + (1.0 - from) * 0.6, 1)?;
+    execution.stage("Zipping polylines", 0.0, 0.6, 1)?;
     let triangles = zipper::zip(polylines, execution)?;
-    execution.stage(
-        "Making the mesh",
-        from + (1.0 - from) * 0.6,
-        1.0,
-        mesh::PASSES,
-    )?;
+    execution.stage("Making the mesh", 0.6, 1.0, mesh::PASSES)?;
     let mesh = Mesh::assemble(polylines, triangles, execution)?;
     if mesh.triangles.is_empty() && !polylines.lines.is_empty() {
         execution.warning(
@@ -332,9 +320,39 @@ fn warn_if_far(mesh: &Mesh, execution: &mut Execution) {
 /// Cost of the parts that are worked on at once; a larger component is a batch of its own.
 const BATCH_COST: usize = 600_000;
 
-/// Scans the volume and hands its parts with their ridge fields to `work`, in batches of whole
-/// components.
+/// Share of the run that reading the labels takes, and of the polyline zipper's until there are
+/// lines.
+const READING: f64 = 0.05;
+const TRACING: f64 = 0.7;
+
+/// Scans the volume and hands its parts to `work`, in batches of whole components. All takes the
+/// progress up to `until`, within which each call has a span of its own. Tells how many parts there
+/// are.
 fn for_each_batch(
+    volume: &Volume,
+    options: &Options,
+    execution: &mut Execution,
+    until: f64,
+    mut work: impl FnMut(&[Part], &mut Execution) -> Result<()>,
+) -> Result<usize> {
+    execution.within(0.0, until);
+    execution.stage("Reading labels", 0.0, READING, 2)?;
+    let all_parts = read_parts(volume, options, execution)?;
+    let total: usize = all_parts.iter().map(Part::voxels).sum();
+    let share = |voxels: usize| until * (READING + (1.0 - READING) * voxels as f64 / total as f64);
+    let mut done = 0;
+    for parts in batches(&all_parts) {
+        let voxels: usize = parts.iter().map(Part::voxels).sum();
+        execution.within(share(done), share(done + voxels));
+        work(parts, execution)?;
+        done += voxels;
+    }
+    execution.within(until, 1.0);
+    Ok(all_parts.len())
+}
+
+/// Hands the parts' ridge fields to `work`, as [`for_each_batch`]; `stage` is what that is called.
+fn for_each_ridge_field(
     volume: &Volume,
     options: &Options,
     execution: &mut Execution,
@@ -342,22 +360,13 @@ fn for_each_batch(
     stage: &'static str,
     mut work: impl FnMut(&Batch, &ridge::RidgeField, &mut Execution) -> Result<()>,
 ) -> Result<()> {
-    execution.stage("Reading labels", 0.0, 0.15 * until, 2)?;
-    let all_parts = read_parts(volume, options, execution)?;
-    let total: usize = all_parts.iter().map(Part::voxels).sum();
     let h = volume.grid.work_spacing();
-    let mut done = 0;
-    for parts in batches(&all_parts) {
-        let share = |voxels: usize| until * (0.15 + 0.85 * voxels as f64 / total as f64);
-        let voxels: usize = parts.iter().map(Part::voxels).sum();
-        let (from, to) = (share(done), share(done + voxels));
-        let middle = 0.5 * (from + to);
-        execution.stage("Computing the ridge field", from, middle, ridge::PASSES)?;
+    for_each_batch(volume, options, execution, until, |parts, execution| {
+        execution.stage("Computing the ridge field", 0.0, 0.5, ridge::PASSES)?;
         let (batch, field) = ridge::ridge_field(parts, volume.grid.dimensions, h, execution)?;
-        execution.stage(stage, middle, to, 1)?;
-        work(&batch, &field, execution)?;
-        done += voxels;
-    }
+        execution.stage(stage, 0.5, 1.0, 1)?;
+        work(&batch, &field, execution)
+    })?;
     Ok(())
 }
 
