@@ -4,8 +4,8 @@
     xvfb-run -a pvpython --force-offscreen-rendering docs/pictures.py PLUGIN mitochondrion.vti docs
 
 Writes into the folder named last: mitochondrion.png (coloured by label), thickness.png (by
-thickness), mesh.png (its triangles, close up) and method-0.png and so on (a vesicle by every method
-that the filter offers).
+thickness), mesh.png (its triangles, close up), vesicle-polyline-zipper.png and
+vesicle-ridge-surface.png (the same closed vesicle by both methods).
 """
 
 import os
@@ -109,17 +109,18 @@ def draw_mesh(mesh, folder):
 
 
 def draw_methods(folder):
-    """A picture a method: method-0.png and so on, in the order of the panel."""
+    """A picture a method, of the same vesicle."""
     source = vesicle()
-    for index, method in enumerate(simple.MidSurface(Input=source).GetProperty("Method").Available):
+    for method in simple.MidSurface(Input=source).GetProperty("Method").Available:
         mesh = simple.MidSurface(Input=source, Method=method)
-        view = make_view(700, 700)
+        view = make_view(500, 500)
         display = simple.Show(mesh, view)
+        display.SetRepresentationType("Surface With Edges")
+        display.EdgeColor = [0.25, 0.25, 0.25]
         colour_by_label(display)
         display.SetScalarBarVisibility(view, False)
-        display.Specular = 0.2
-        look(view, [0.5, -1.0, 0.9], 1.3)
-        save(view, folder, f"method-{index}.png")
+        look(view, [0.5, -1.0, 1.3], 1.4)
+        save(view, folder, f"vesicle-{method.lower().replace(' ', '-')}.png")
 
 
 def main():

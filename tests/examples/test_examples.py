@@ -53,14 +53,18 @@ class ExamplesTest(unittest.TestCase):
     def test_quantify(self):
         self.assertIn("voxel size: (1.0, 1.0, 1.0)", self.run_example("quantify"))
         mesh = read(vtkXMLPolyDataReader(), self.folder / "mid-surface.vtp")
-        pieces = self.rows("pieces.csv")
-        self.assertEqual({piece["label"] for piece in pieces}, {"1", "2"})
+        rows = self.rows("pieces.csv")
+        self.assertEqual([row["Of"] for row in rows if "component" not in row["Of"]],
+                         ["total", "label 1", "label 2"])
+        pieces = [row for row in rows if "component" in row["Of"]]
+        self.assertEqual({float(piece["Label"]) for piece in pieces}, {1, 2})
         corners = points(mesh)[vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         area = 0.5 * np.linalg.norm(normals, axis=1).sum()
-        self.assertAlmostEqual(sum(float(piece["area"]) for piece in pieces) / area, 1, places=4)
+        self.assertAlmostEqual(float(rows[0]["Area"]) / area, 1, places=4)
+        self.assertAlmostEqual(sum(float(piece["Area"]) for piece in pieces) / area, 1, places=4)
         for piece in pieces:
-            self.assertTrue(1 < float(piece["mean thickness"]) < 10, piece)
+            self.assertTrue(1 < float(piece["ThicknessMedian"]) < 10, piece)
 
     def test_hand_over(self):
         self.run_example("quantify")

@@ -1,6 +1,6 @@
-"""Fails unless a picture of ParaView's window shows a surface coloured by its thickness.
+"""Fails unless a picture of ParaView's window shows a closed surface coloured by its thickness.
 
-Loose on purpose: fonts, lights and window sizes differ. The view is the largest part of the window
+Of a vesicle, seen along z: without its caps one would look through it. Loose on purpose: fonts, lights and window sizes differ. The view is the largest part of the window
 in ParaView's bluish grey; the colour legend stands in its lower right corner.
 """
 
@@ -35,6 +35,9 @@ def share(mask):
 
 surface = far[part]
 assert 0.005 < share(surface) < 0.8, f"{share(surface):.1%} of the view is surface"
+middle = (slice(top + (bottom - top) * 9 // 20, top + (bottom - top) * 11 // 20),
+          slice(left + (right - left) * 9 // 20, left + (right - left) * 11 // 20))
+assert share(far[middle]) > 0.95, "the surface is open in the middle, where its caps are"
 
 # The legend runs from ParaView's blue over near white to its red.
 legend = pixels[(top + bottom) // 2 : bottom, (left + right) // 2 : right]

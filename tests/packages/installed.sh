@@ -39,8 +39,8 @@ mesh = servermanager.Fetch(mid_surface)
 assert mesh.GetNumberOfPolys() > 1000, mesh.GetNumberOfPolys()
 print("ok:", mesh.GetNumberOfPolys(), "triangles")
 PYTHON
-pvpython "$work/extract.py" tube.vti
-pvbatch --force-offscreen-rendering "$work/extract.py" tube.vti
+pvpython "$work/extract.py" vesicle.vti
+pvbatch --force-offscreen-rendering "$work/extract.py" vesicle.vti
 say "The same on a server"
 pvserver --server-port=11731 --force-offscreen-rendering >"$work/server.log" 2>&1 &
 server=$!
@@ -48,10 +48,10 @@ for _ in $(seq 60); do
   grep -q 'Accepting connection' "$work/server.log" && break
   sleep 0.5
 done
-pvpython "$work/extract.py" "$PWD/tube.vti" 11731
+pvpython "$work/extract.py" "$PWD/vesicle.vti" 11731
 kill "$server" 2>/dev/null || true
 say "The same in the window"
-bash gui/run.sh tube.vti $work/picture.png
+bash gui/run.sh vesicle.vti $work/picture.png
 
 say "The plugin: removed without a trace, lines of others kept"
 purge midsurface-paraview
@@ -73,8 +73,8 @@ cmake -S examples/cxx -B "$work/cxx" >"$work/log" 2>&1 || {
   fail "find_package(MidSurface)"
 }
 cmake --build "$work/cxx"
-"$work/cxx/mid_surface" tube.vti "$work/cxx.vtp"
-/usr/bin/python3 examples/python/mid_surface.py tube.vti "$work/python.vtp"
+"$work/cxx/mid_surface" vesicle.vti "$work/cxx.vtp"
+/usr/bin/python3 examples/python/mid_surface.py vesicle.vti "$work/python.vtp"
 cmp "$work/cxx.vtp" "$work/python.vtp"
 # Words on purpose: these are lists of flags.
 # shellcheck disable=SC2046

@@ -14,7 +14,7 @@ trap 'rm -rf "$work" || as_root rm -rf "$work"' EXIT
 mkdir -p "$work/upper" "$work/work" "$work/root" "$work/files"
 cp -r build/packages examples tests/packages/installed.sh tests/gui "$work/files"
 cargo run --quiet --locked --release --package phantoms --bin make-sample -- \
-  "$work/files/tube.vti" tube --size 64 64 32
+  "$work/files/vesicle.vti" sphere --size 64 64 64
 
 # Runs as root in a mount namespace of its own, so that nothing stays mounted.
 in_overlay='

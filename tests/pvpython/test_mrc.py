@@ -80,7 +80,10 @@ class Spacing(Files):
 
     def test_the_stages_are_corrected_too(self):
         reader = self.reader(self.header((3, 3, 3), 1))
+        ridge, _ = update(simple.MidSurface(Input=reader, Method="Ridge surface"))
         whole, _ = update(simple.MidSurface(Input=reader, Method="Polyline zipper"))
+        # Half a voxel of 3 between the methods.
+        np.testing.assert_allclose(ridge.GetBounds(), whole.GetBounds(), atol=1.5)
         polylines = simple.MidPolylines(Input=reader)
         _, messages = update(polylines)
         self.assertEqual(len(messages.warnings), 1)
