@@ -10,6 +10,9 @@ pub(crate) const SIDE: usize = EDGE + 2;
 /// A value for every voxel of one layer of a brick: shape (8, 8), x fastest.
 pub(crate) type Layer = [f32; LAYER];
 
+/// A value for every voxel of a row along x of a brick.
+pub(crate) type Row = [f32; EDGE];
+
 /// The voxels of a brick and those around it: shape (10, 10, 10), x fastest.
 pub(crate) struct Block<T> {
     pub values: [T; SIDE * SIDE * SIDE],
@@ -30,7 +33,12 @@ impl<T: Copy + Default> Block<T> {
                 for j in 0..y.count {
                     let to = ((z.to + k) * SIDE + y.to + j) * SIDE + x.to;
                     let from = brick * BRICK + (z.from + k) * LAYER + (y.from + j) * EDGE + x.from;
-                    values[to..to + x.count].copy_from_slice(&field[from..from + x.count]);
+                    if x.count == EDGE {
+                        // A copy of a length that is known is no call.
+                        values[to..to + EDGE].copy_from_slice(&field[from..from + EDGE]);
+                    } else {
+                        values[to] = field[from];
+                    }
                 }
             }
         }
@@ -108,6 +116,7 @@ impl Block<f32> {
     }
 
     /// The largest value among each voxel of the brick and its 26 neighbours.
+    #[inline(always)]
     pub fn largest_near(&self) -> [f32; BRICK] {
         let larger = |a: f32, b: f32| if a > b { a } else { b };
         let three = |v: &[f32], i: usize, stride: usize| {
@@ -135,36 +144,63 @@ impl Block<f32> {
         std::array::from_fn(|i| self.values[row(i / EDGE, z) + i % EDGE])
     }
 
+    /// The field in row y of layer z of the brick.
+    #[inline(always)]
+    pub fn row(&self, y: usize, z: usize) -> &Row {
+        self.row_at(row(y, z))
+    }
+
+    #[inline(always)]
+    fn row_at(&self, first: usize) -> &Row {
+        self.values[first..]
+            .first_chunk()
+            .unwrap_or(&[0.0; EDGE])
+    }
+
     /// Gradient and Hessian in layer z of the brick, by central differences.
+    #[inline(always)]
     pub fn derivatives(&self, z: usize, h: Vec3) -> ([Layer; 3], Symmetric<Layer>) {
-        let stride = [1, SIDE, SIDE * SIDE];
         let mut gradient = [[0.0; LAYER]; 3];
         let mut hessian = [[0.0; LAYER]; 6];
         for y in 0..EDGE {
-            let first = row(y, z);
-            let at = |from: usize| &self.values[from..from + EDGE];
-            let centre = at(first);
-            for axis in 0..3 {
-                let (low, high) = (at(first - stride[axis]), at(first + stride[axis]));
-                let once = (0.5 / h[axis]) as f32;
-                let twice = (1.0 / (h[axis] * h[axis])) as f32;
-                for x in 0..EDGE {
-                    gradient[axis][y * EDGE + x] = once * (high[x] - low[x]);
-                    // Differences first, since they are exact where the field is smooth.
-                    let bend = (high[x] - centre[x]) - (centre[x] - low[x]);
-                    hessian[axis][y * EDGE + x] = twice * bend;
-                }
+            let (first, second) = self.row_derivatives(y, z, h);
+            let layers = gradient.iter_mut().chain(&mut hessian);
+            for (layer, row) in layers.zip(first.iter().chain(&second)) {
+                layer[y * EDGE..][..EDGE].copy_from_slice(row);
             }
-            for (entry, (a, b)) in [(0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
-                let (s, t) = (stride[a], stride[b]);
-                let (high, low) = (first + t, first - t);
-                let corners = [at(high + s), at(high - s), at(low + s), at(low - s)];
-                let scale = (0.25 / (h[a] * h[b])) as f32;
-                for x in 0..EDGE {
-                    let [above, below, above_low, below_low] = corners.map(|v| v[x]);
-                    hessian[3 + entry][y * EDGE + x] =
-                        scale * ((above - below) - (above_low - below_low));
-                }
+        }
+        (gradient, hessian)
+    }
+
+    /// Gradient and Hessian in row y of layer z of the brick, by central differences.
+    #[inline(always)]
+    pub fn row_derivatives(&self, y: usize, z: usize, h: Vec3) -> ([Row; 3], Symmetric<Row>) {
+        let stride = [1, SIDE, SIDE * SIDE];
+        let mut gradient = [[0.0; EDGE]; 3];
+        let mut hessian = [[0.0; EDGE]; 6];
+        let first = row(y, z);
+        let centre = self.row_at(first);
+        for axis in 0..3 {
+            let low = self.row_at(first - stride[axis]);
+            let high = self.row_at(first + stride[axis]);
+            let once = (0.5 / h[axis]) as f32;
+            let twice = (1.0 / (h[axis] * h[axis])) as f32;
+            for x in 0..EDGE {
+                gradient[axis][x] = once * (high[x] - low[x]);
+                // Differences first, since they are exact where the field is smooth.
+                let bend = (high[x] - centre[x]) - (centre[x] - low[x]);
+                hessian[axis][x] = twice * bend;
+            }
+        }
+        for (entry, (a, b)) in [(0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+            let (s, t) = (stride[a], stride[b]);
+            let (high, low) = (first + t, first - t);
+            let (above, below) = (self.row_at(high + s), self.row_at(high - s));
+            let (above_low, below_low) = (self.row_at(low + s), self.row_at(low - s));
+            let scale = (0.25 / (h[a] * h[b])) as f32;
+            for x in 0..EDGE {
+                let (up, down) = (above[x] - below[x], above_low[x] - below_low[x]);
+                hessian[3 + entry][x] = scale * (up - down);
             }
         }
         (gradient, hessian)

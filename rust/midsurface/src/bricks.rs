@@ -98,6 +98,7 @@ impl Directory {
     }
 
     /// Index of the brick at a place, `None` where the part has none.
+    #[inline]
     pub fn brick(&self, place: [usize; 3]) -> Option<usize> {
         let inside =
             (0..3).all(|a| place[a] >= self.low[a] && place[a] - self.low[a] < self.extent[a]);
@@ -121,6 +122,7 @@ impl Directory {
     }
 
     /// Entry of a voxel in the batch's arrays, `None` where the part has no brick.
+    #[inline]
     pub fn entry(&self, voxel: [usize; 3]) -> Option<usize> {
         let brick = self.brick(voxel.map(|v| v / EDGE))?;
         let [x, y, z] = voxel.map(|v| v % EDGE);
@@ -128,6 +130,7 @@ impl Directory {
     }
 
     /// Like [`Self::entry`], for a voxel that may lie outside the volume.
+    #[inline]
     pub fn entry_at(&self, voxel: [isize; 3]) -> Option<usize> {
         if voxel.iter().any(|&v| v < 0) {
             return None;

@@ -7,10 +7,11 @@
 //! support of a thin membrane is a few voxels. Beyond the border of the volume lies the unknown,
 //! which is not an outside: it has no voxel to be near to.
 
-use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
+use crate::bricks::{Batch, Directory, BRICK, EDGE};
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
+use crate::vectors::with_widest_vectors;
 
 /// Distances are told apart up to this many work units; nothing so thick is a membrane.
 pub(crate) const LARGEST: f64 = 64.0;
@@ -28,12 +29,20 @@ pub(crate) fn distance(batch: &Batch, h: Vec3, execution: &mut Execution) -> Res
     }
     let mut along_y = batch.field()?;
     execution.fill(&mut along_y, BRICK, |brick, out| {
-        lower_envelope(batch, brick, &along_x, 1, h[1], out)
+        with_widest_vectors(
+            #[inline(always)]
+            || lower_envelope(batch, brick, &along_x, 1, h[1], out),
+        );
     })?;
     let mut squared = along_x;
     execution.fill(&mut squared, BRICK, |brick, out| {
-        lower_envelope(batch, brick, &along_y, 2, h[2], out);
-        out.iter_mut().for_each(|v| *v = v.sqrt());
+        with_widest_vectors(
+            #[inline(always)]
+            || {
+                lower_envelope(batch, brick, &along_y, 2, h[2], out);
+                out.iter_mut().for_each(|v| *v = v.sqrt());
+            },
+        );
     })?;
     Ok(squared)
 }
@@ -60,6 +69,7 @@ fn write_run(directory: &Directory, run: &crate::runs::Run, h: f64, out: &mut [f
 }
 
 /// `out = min over k of input(i + k) + (k h)²` along `axis`, for the labelled voxels of a brick.
+#[inline(always)]
 fn lower_envelope(
     batch: &Batch,
     brick: usize,
@@ -70,10 +80,12 @@ fn lower_envelope(
 ) {
     let (directory, place) = batch.brick(brick);
     let own = &input[brick * BRICK..][..BRICK];
-    for row in 0..LAYER {
-        let own: &[f32; EDGE] = own[row * EDGE..][..EDGE].try_into().unwrap_or(&[0.0; EDGE]);
-        let out = &mut out[row * EDGE..][..EDGE];
-        out.copy_from_slice(own);
+    out.copy_from_slice(own);
+    let rows = out.chunks_exact_mut(EDGE).enumerate();
+    for (row, out) in rows.filter(|(_, out)| out.iter().any(|v| *v > 0.0)) {
+        let Some(out) = out.first_chunk_mut::<EDGE>() else {
+            continue;
+        };
         let mut worst = largest(out);
         let voxel = [
             place[0] * EDGE,
@@ -89,11 +101,12 @@ fn lower_envelope(
                 if at[axis] < 0 || at[axis] >= directory.dimensions[axis] as isize {
                     continue;
                 }
-                let other = directory
-                    .entry_at(at)
-                    .map_or(&[0.0; EDGE][..], |e| &input[e..][..EDGE]);
-                for (out, other) in out.iter_mut().zip(other) {
-                    *out = out.min(other + step);
+                let entry = directory.entry_at(at);
+                let other = entry.and_then(|entry| input[entry..].first_chunk::<EDGE>());
+                for (out, other) in out.iter_mut().zip(other.unwrap_or(&[0.0; EDGE])) {
+                    // f32::min would ask whether either is no number.
+                    let far = other + step;
+                    *out = if far < *out { far } else { *out };
                 }
             }
             worst = largest(out);
@@ -103,6 +116,7 @@ fn lower_envelope(
     }
 }
 
-fn largest(row: &[f32]) -> f32 {
-    row.iter().copied().fold(0.0, f32::max)
+#[inline(always)]
+fn largest(row: &[f32; EDGE]) -> f32 {
+    row.iter().fold(0.0, |most, v| if *v > most { *v } else { most })
 }

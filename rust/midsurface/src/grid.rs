@@ -114,6 +114,21 @@ impl Grid {
     }
 }
 
+/// ⌊v⌋ by a cast: on processors without an instruction for it `f64::floor` is a call.
+#[inline(always)]
+pub(crate) fn floor(v: f64) -> isize {
+    let towards_zero = v as isize;
+    towards_zero - isize::from((towards_zero as f64) > v)
+}
+
+/// The nearest whole number, halves away from zero, as [`f64::round`] has it but without a call.
+#[inline(always)]
+pub(crate) fn round(v: f64) -> isize {
+    let towards_zero = v as isize;
+    let rest = v - towards_zero as f64;
+    towards_zero + isize::from(rest >= 0.5) - isize::from(rest <= -0.5)
+}
+
 /// a · b.
 pub fn dot(a: Vec3, b: Vec3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -162,6 +177,16 @@ pub fn unit(a: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn whole_numbers_are_those_of_the_standard_library() {
+        let halves = (-9..10).map(|i| 0.5 * f64::from(i));
+        let near = halves.flat_map(|v: f64| [v.next_down(), v, v.next_up()]);
+        for v in near.chain([0.0, -0.0, 1e9 + 0.25, -1e9 - 0.75]) {
+            assert_eq!(floor(v), v.floor() as isize, "{v}");
+            assert_eq!(round(v), v.round() as isize, "{v}");
+        }
+    }
 
     #[test]
     fn a_stretched_z_is_told_from_thick_slices() {

@@ -4,7 +4,7 @@
 //! where a field crosses a threshold does not snap to the grid, as under linear interpolation.
 
 use crate::bricks::{Directory, EDGE, LAYER};
-use crate::grid::Vec3;
+use crate::grid::{floor, Vec3};
 
 /// Values of the uniform cubic B-spline at offsets −1, 0, 1, 2 from the voxel below.
 fn basis(t: f64) -> [f64; 4] {
@@ -48,8 +48,8 @@ impl Sampler<'_> {
     /// The 4 × 4 coefficients around (x, y) in slice z, and the fraction within the pixel.
     fn window(&self, at: [f64; 2], z: usize) -> ([[f64; 4]; 4], [f64; 2]) {
         let p = [at[0] / self.h[0], at[1] / self.h[1]];
-        let base = [p[0].floor(), p[1].floor()];
-        let (x, y) = (base[0] as isize - 1, base[1] as isize - 1);
+        let base = p.map(floor);
+        let (x, y) = (base[0] - 1, base[1] - 1);
         let mut window = [[0.0; 4]; 4];
         let [nx, ny, _] = self.directory.dimensions;
         let inside = x >= 0 && y >= 0 && x as usize + 3 < nx && y as usize + 3 < ny;
@@ -62,7 +62,7 @@ impl Sampler<'_> {
                 }
             }
         }
-        (window, [p[0] - base[0], p[1] - base[1]])
+        (window, [p[0] - base[0] as f64, p[1] - base[1] as f64])
     }
 
     /// Fills the window from at most four bricks.

@@ -79,6 +79,7 @@ mod terraces;
 mod thickness;
 mod trace;
 mod trim;
+mod vectors;
 mod volume;
 mod weld;
 mod zipper;
@@ -283,7 +284,7 @@ fn find_ridge_surface(
 /// Takes what is left of the progress.
 fn zip(polylines: &Polylines, execution: &mut Execution) -> Result<Mesh> {
     let polylines = &*polylines.without_repeats();
-    execution.stage("Zipping polylines", 0.0, 0.6, 1)?;
+    execution.stage("Zipping polylines", 0.0, 0.6, zipper::PASSES)?;
     let triangles = zipper::zip(polylines, execution)?;
     execution.stage("Making the mesh", 0.6, 1.0, mesh::PASSES)?;
     let mesh = Mesh::assemble(polylines, triangles, execution)?;

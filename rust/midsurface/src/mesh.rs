@@ -5,14 +5,14 @@ use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::flips::flip_edges;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
-use crate::halfedge::{Edges, NONE};
+use crate::halfedge::{Edges, Fans, NONE};
 use crate::manifold::{make_manifold, Surface};
 use crate::polylines::Polylines;
 use crate::terraces::{self, flatten_terraces, LineOfPoint};
 use crate::zipper::Zipped;
 
 /// Passes over the mesh that [`Mesh::assemble`] makes, for its progress.
-pub(crate) const PASSES: usize = 3 + terraces::PASSES;
+pub(crate) const PASSES: usize = 3 + 2 * NORMAL_PASSES + terraces::PASSES;
 
 /// A triangle mesh: a 2-manifold with boundary, consistently wound in each connected piece.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -87,7 +87,8 @@ impl Mesh {
         execution.pass_done()?;
         turn_outward(&surface.points, &mut surface.triangles);
         execution.pass_done()?;
-        let rough = normals(&surface.points, &surface.triangles);
+        let fans = Fans::new(&surface.triangles, surface.points.len());
+        let rough = normals(&surface.points, &surface.triangles, &fans, execution)?;
         let lines = lines_of_points(polylines, &surface.source);
         flatten_terraces(
             &mut surface.points,
@@ -108,7 +109,7 @@ impl Mesh {
                 .collect(),
             ..Self::default()
         };
-        let normals = normals(&surface.points, &surface.triangles);
+        let normals = normals(&surface.points, &surface.triangles, &fans, execution)?;
         // Number of each point in the mesh plus one; 0 for points that no triangle uses.
         let mut number: Vec<u32> = zeros(surface.points.len())?;
         mesh.triangles = reserved(surface.triangles.len())?;
@@ -295,28 +296,46 @@ pub(crate) fn turn_outward(points: &[Vec3], triangles: &mut [[u32; 3]]) {
     }
 }
 
+/// Corners handed to a worker at a time, or points.
+const PIECE: usize = 2048;
+/// Passes that [`normals`] makes, for its progress.
+pub(crate) const NORMAL_PASSES: usize = 2;
+
 /// Unit normals of the points (Thürmer and Wüthrich 1998: weighted by the angle at the point).
-pub(crate) fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let mut normals = vec![[0.0; 3]; points.len()];
-    for t in triangles {
-        let [a, b, c] = t.map(|p| points[p as usize]);
-        let normal = unit(cross(sub(b, a), sub(c, a)));
-        for (k, (p, q, r)) in [(a, b, c), (b, c, a), (c, a, b)].into_iter().enumerate() {
-            let angle = dot(unit(sub(q, p)), unit(sub(r, p)))
-                .clamp(-1.0, 1.0)
-                .acos();
-            let sum = &mut normals[t[k] as usize];
-            *sum = along(*sum, angle, normal);
+/// `fans` are those of the triangles.
+pub(crate) fn normals(
+    points: &[Vec3],
+    triangles: &[[u32; 3]],
+    fans: &Fans,
+    execution: &mut Execution,
+) -> Result<Vec<Vec3>> {
+    let mut weighted: Vec<[Vec3; 3]> = zeros(triangles.len())?;
+    execution.fill(&mut weighted, PIECE, |piece, out| {
+        for (t, out) in triangles[piece * PIECE..].iter().zip(out) {
+            let [a, b, c] = t.map(|p| points[p as usize]);
+            let normal = unit(cross(sub(b, a), sub(c, a)));
+            let corners = [(a, b, c), (b, c, a), (c, a, b)];
+            *out = corners.map(|(p, q, r)| {
+                let cosine = dot(unit(sub(q, p)), unit(sub(r, p)));
+                normal.map(|v| cosine.clamp(-1.0, 1.0).acos() * v)
+            });
         }
-    }
-    // Where triangles fold back on each other their normals cancel: any one of them will do.
-    for t in triangles {
-        let [a, b, c] = t.map(|p| points[p as usize]);
-        for p in t.map(|p| p as usize) {
-            if length(normals[p]) < 1e-6 {
-                normals[p] = unit(cross(sub(b, a), sub(c, a)));
+    })?;
+    let mut normals: Vec<Vec3> = zeros(points.len())?;
+    execution.fill(&mut normals, PIECE, |piece, out| {
+        for (i, out) in out.iter_mut().enumerate() {
+            let corners = fans.of((piece * PIECE + i) as u32);
+            let add = |sum, &e: &u32| along(sum, 1.0, weighted[e as usize / 3][e as usize % 3]);
+            let mut normal = corners.iter().fold([0.0; 3], add);
+            if length(normal) < 1e-6 {
+                // Where triangles fold back on each other their normals cancel: any will do.
+                let sharp = |e: &&u32| length(weighted[**e as usize / 3][**e as usize % 3]) > 0.0;
+                if let Some(&e) = corners.iter().find(sharp) {
+                    normal = weighted[e as usize / 3][e as usize % 3];
+                }
             }
+            *out = unit(normal);
         }
-    }
-    normals.into_iter().map(unit).collect()
+    })?;
+    Ok(normals)
 }

@@ -255,12 +255,13 @@ fn tangent(line: &Trace, i: usize) -> Point {
 fn cover_line(slice: &mut Slice, line: &Trace, widths: &[f64], component: u32) {
     const WINDOW: usize = 8;
     let unit = slice.h()[0].min(slice.h()[1]);
+    let mut near = Vec::with_capacity(2 * WINDOW + 1);
     // A trace's points are 0.7 apart, so that every other one is near enough to all pixels.
     for (i, &p) in line.points.iter().enumerate().step_by(2) {
-        let mut near =
-            widths[i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(widths.len())].to_vec();
-        near.sort_by(f64::total_cmp);
-        let typical = near[near.len() / 2];
+        near.clear();
+        near.extend(&widths[i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(widths.len())]);
+        let middle = near.len() / 2;
+        let typical = *near.select_nth_unstable_by(middle, f64::total_cmp).1;
         let radius = widths[i].min(1.3 * typical) + 0.75 * unit;
         slice.cover(p, radius, component);
     }

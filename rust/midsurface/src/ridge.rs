@@ -66,6 +66,9 @@ pub(crate) fn ridge_field<'a>(
         // Neighbours mostly have the same maximum.
         let (mut latest, mut endless) = (f32::NAN, 1.0);
         for (fraction, &thick) in fraction.iter_mut().zip(&thick[brick * BRICK..]) {
+            if *fraction == 0.0 {
+                continue;
+            }
             if thick != latest {
                 (latest, endless) = (thick, endless_sheet(thick, sigma));
             }

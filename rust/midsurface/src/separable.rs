@@ -7,6 +7,7 @@ use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
+use crate::vectors::with_widest_vectors;
 
 /// Passes over all bricks that a filter makes, for its progress.
 pub(crate) const PASSES: usize = 3;
@@ -190,19 +191,16 @@ fn filter<'k>(
                 return;
             };
             let (directory, place) = batch.brick(brick);
-            let input = Neighbours::new(directory, place, axis, kernel.radius, &field, size);
-            if input.bricks.iter().all(Option::is_none) {
-                out.fill(0.0);
-                return;
-            }
             let weights: [&[f32]; EDGE] =
                 std::array::from_fn(|k| weights(kernel, place[axis] * EDGE + k));
-            for (value, out) in out.chunks_exact_mut(BRICK).enumerate() {
-                match axis {
-                    0 => input.along_x(value, &weights, combine, out),
-                    _ => input.across(value, axis, &weights, combine, out),
-                }
-            }
+            with_widest_vectors(
+                #[inline(always)]
+                || {
+                    let input =
+                        Neighbours::new(directory, place, axis, kernel.radius, &field, size);
+                    input.filter(axis, &weights, combine, out);
+                },
+            );
         })?;
         std::mem::swap(&mut field, scratch);
     }
@@ -235,6 +233,7 @@ struct Neighbours<'a> {
 }
 
 impl<'a> Neighbours<'a> {
+    #[inline(always)]
     fn new(
         directory: &Directory,
         place: [usize; 3],
@@ -254,6 +253,27 @@ impl<'a> Neighbours<'a> {
         Self {
             bricks: (0..=2 * reach).map(brick).collect(),
             lead: reach * EDGE - radius,
+        }
+    }
+
+    /// Filters all values of the voxels along `axis`.
+    #[inline(always)]
+    fn filter(
+        &self,
+        axis: usize,
+        weights: &[&[f32]; EDGE],
+        combine: impl Fn(f32, f32, f32) -> f32 + Copy,
+        out: &mut [f32],
+    ) {
+        if self.bricks.iter().all(Option::is_none) {
+            out.fill(0.0);
+            return;
+        }
+        for (value, out) in out.chunks_exact_mut(BRICK).enumerate() {
+            match axis {
+                0 => self.along_x(value, weights, combine, out),
+                _ => self.across(value, axis, weights, combine, out),
+            }
         }
     }
 

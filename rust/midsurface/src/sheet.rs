@@ -10,13 +10,14 @@
 //! f across the sheet is a Gaussian, as it is for thin sheets. Since only the component along n counts, a slope of f within the sheet, as
 //! it is near every rim, does not pull the crest aside.
 
-use crate::block::{row, Block, Layer, SIDE};
-use crate::bricks::{Batch, BRICK, EDGE, LAYER};
+use crate::block::{row, Block, Row, SIDE};
+use crate::bricks::{Batch, BRICK, EDGE};
 use crate::eigen::{eigenvalues, eigenvector, Symmetric};
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::separable::{smooth, Kernel};
+use crate::vectors::with_widest_vectors;
 
 /// No sheet is taken to have shrunk by more, work units.
 const MOST_SHRUNK: f32 = 0.75;
@@ -61,7 +62,11 @@ pub(crate) fn sheets(
         if distance.iter().all(|d| *d == 0.0) {
             return [[0.0; BRICK]; 3];
         }
-        sources_of_brick(&Block::smooth(batch, brick, ridge), distance, h)
+        let ridge = Block::smooth(batch, brick, ridge);
+        with_widest_vectors(
+            #[inline(always)]
+            || sources_of_brick(&ridge, distance, h),
+        )
     })?;
     let kernels: Vec<[Kernel; 3]> = scale
         .iter()
@@ -86,28 +91,32 @@ pub(crate) fn sheets(
         let tensor = std::array::from_fn(|k| &tensor[k][brick * BRICK..][..BRICK]);
         let sigma = scale[batch.part_of_brick[brick] as usize];
         let ridge = Block::smooth(batch, brick, ridge);
-        sheets_of_brick(&ridge, tensor, &near.largest_near(), sigma, h)
+        with_widest_vectors(
+            #[inline(always)]
+            || sheets_of_brick(&ridge, tensor, &near.largest_near(), sigma, h),
+        )
     })?;
     Ok(sheets.into_flattened())
 }
 
 /// [`source`] of a brick's voxels; zero outside the label.
+#[inline(always)]
 fn sources_of_brick(ridge: &Block<f32>, distance: &[f32], h: Vec3) -> [[f32; BRICK]; 3] {
     let mut sources = [[0.0; BRICK]; 3];
-    for (z, distance) in distance.chunks_exact(LAYER).enumerate() {
+    for (row, distance) in distance.chunks_exact(EDGE).enumerate() {
         if distance.iter().all(|d| *d == 0.0) {
             continue;
         }
-        let (_, hessian) = ridge.derivatives(z, h);
-        let mut found: [Layer; 3] = [[0.0; LAYER]; 3];
-        for i in 0..LAYER {
+        let (_, hessian) = ridge.row_derivatives(row % EDGE, row / EDGE, h);
+        let mut found: [Row; 3] = [[0.0; EDGE]; 3];
+        for i in 0..EDGE {
             let e = source(hessian.each_ref().map(|entry| entry[i]), distance[i]);
             for (found, v) in found.iter_mut().zip(e) {
                 found[i] = v;
             }
         }
         for (sources, found) in sources.iter_mut().zip(&found) {
-            sources[z * LAYER..][..LAYER].copy_from_slice(found);
+            sources[row * EDGE..][..EDGE].copy_from_slice(found);
         }
     }
     sources
@@ -141,6 +150,7 @@ pub(crate) fn source(hessian: Symmetric<f32>, distance: f32) -> [f32; 3] {
 }
 
 /// The sheets of a brick's voxels from the entries of the smoothed tensor, where the label is `near`.
+#[inline(always)]
 fn sheets_of_brick(
     ridge: &Block<f32>,
     tensor: [&[f32]; ENTRIES],
@@ -150,16 +160,21 @@ fn sheets_of_brick(
 ) -> [Sheet; BRICK] {
     let mut sheets = [Sheet::default(); BRICK];
     let most = (TRUSTED * sigma + 0.5) as f32;
-    for (z, near) in near.chunks_exact(LAYER).enumerate() {
+    for (row, near) in near.chunks_exact(EDGE).enumerate() {
         if near.iter().all(|d| *d == 0.0) {
             continue;
         }
-        let value = ridge.layer(z);
-        let (gradient, hessian) = ridge.derivatives(z, h);
-        let tensor = tensor.map(|entry| &entry[z * LAYER..][..LAYER]);
-        let mut found: [Layer; 4] = [[0.0; LAYER]; 4];
-        for i in 0..LAYER {
-            let [xx, yy, xy, xz, yz] = tensor.map(|entry| entry[i]);
+        let (y, z) = (row % EDGE, row / EDGE);
+        let value = ridge.row(y, z);
+        let (gradient, hessian) = ridge.row_derivatives(y, z, h);
+        // Copies, whose length is known: only then do the eight voxels run side by side.
+        let mut entries: [Row; ENTRIES] = [[0.0; EDGE]; ENTRIES];
+        for (own, entry) in entries.iter_mut().zip(&tensor) {
+            own.copy_from_slice(&entry[row * EDGE..][..EDGE]);
+        }
+        let mut found: [Row; 4] = [[0.0; EDGE]; 4];
+        for i in 0..EDGE {
+            let [xx, yy, xy, xz, yz] = entries.each_ref().map(|entry| entry[i]);
             let sheet = sheet(
                 [xx, yy, 0.0, xy, xz, yz],
                 value[i],
@@ -171,7 +186,7 @@ fn sheets_of_brick(
                 found[i] = if known { v } else { 0.0 };
             }
         }
-        for (i, sheet) in sheets[z * LAYER..][..LAYER].iter_mut().enumerate() {
+        for (i, sheet) in sheets[row * EDGE..][..EDGE].iter_mut().enumerate() {
             *sheet = found.each_ref().map(|found| found[i]);
         }
     }
@@ -230,8 +245,12 @@ pub(crate) fn unshrink(
             return [0.0; BRICK];
         }
         let half_variance = (0.5 * variance(brick)) as f32;
-        divergence(&Block::gather(batch, brick, sheets).values, h)
-            .map(|divergence| (half_variance * divergence).clamp(-MOST_SHRUNK, MOST_SHRUNK))
+        let block = Block::gather(batch, brick, sheets);
+        let divergence = with_widest_vectors(
+            #[inline(always)]
+            || divergence(&block.values, h),
+        );
+        divergence.map(|divergence| (half_variance * divergence).clamp(-MOST_SHRUNK, MOST_SHRUNK))
     })?;
     execution.fill(sheets, BRICK, |brick, sheets| {
         for (sheet, shift) in sheets.iter_mut().zip(&shifts[brick]) {
@@ -242,26 +261,28 @@ pub(crate) fn unshrink(
 
 /// div n at the voxels of a block's brick, differences with unknown neighbours left out; 0 at voxels
 /// that know no sheet.
-fn divergence(sheets: &[Sheet], h: Vec3) -> [f32; BRICK] {
+#[inline(always)]
+fn divergence(sheets: &[Sheet; SIDE * SIDE * SIDE], h: Vec3) -> [f32; BRICK] {
+    let mut normals = [[0.0; SIDE * SIDE * SIDE]; 3];
+    for (i, sheet) in sheets.iter().enumerate() {
+        for (normals, v) in normals.iter_mut().zip(sheet) {
+            normals[i] = *v;
+        }
+    }
+    let rows = |first: usize| normals.each_ref().map(|n| &n[first..first + EDGE]);
     let mut sum = [0.0; BRICK];
     for (i, sum) in sum.chunks_exact_mut(EDGE).enumerate() {
         let first = row(i % EDGE, i / EDGE);
-        let normals = |at: usize| -> [[f32; EDGE]; 3] {
-            let mut normals = [[0.0; EDGE]; 3];
-            for (x, sheet) in sheets[at..at + EDGE].iter().enumerate() {
-                for (normals, v) in normals.iter_mut().zip(sheet) {
-                    normals[x] = *v;
-                }
-            }
-            normals
-        };
-        let own = normals(first);
+        let own = rows(first);
+        if own.iter().all(|n| n.iter().all(|v| *v == 0.0)) {
+            continue;
+        }
         for axis in 0..3 {
             let stride = [1, SIDE, SIDE * SIDE][axis];
-            let (low, high) = (normals(first - stride), normals(first + stride));
+            let (low, high) = (rows(first - stride), rows(first + stride));
             let per_step = 1.0 / h[axis] as f32;
             for x in 0..EDGE {
-                let at = |n: &[[f32; EDGE]; 3]| [n[0][x], n[1][x], n[2][x]];
+                let at = |n: &[&[f32]; 3]| [n[0][x], n[1][x], n[2][x]];
                 sum[x] += per_step * difference(at(&low), at(&own), at(&high), axis);
             }
         }

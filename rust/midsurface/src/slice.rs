@@ -2,7 +2,7 @@
 
 use crate::bricks::{Directory, EDGE, LAYER};
 use crate::components::{touching, DisjointSets};
-use crate::grid::{along, dot, unit, Vec3};
+use crate::grid::{along, dot, floor, round, unit, Vec3};
 use crate::interpolation::Sampler;
 use crate::runs::Run;
 use crate::sheet::{normal, Sheet};
@@ -56,6 +56,7 @@ impl<'a> Slice<'a> {
         self.fraction.directory
     }
 
+    #[inline]
     fn entry(&self, x: isize, y: isize) -> Option<usize> {
         if x < 0 || y < 0 {
             return None;
@@ -70,10 +71,7 @@ impl<'a> Slice<'a> {
     /// The pixel a point lies in.
     pub fn pixel(&self, p: Point) -> [isize; 2] {
         let h = self.h();
-        [
-            (p[0] / h[0]).round() as isize,
-            (p[1] / h[1]).round() as isize,
-        ]
+        [round(p[0] / h[0]), round(p[1] / h[1])]
     }
 
     /// The middle of a pixel.
@@ -87,13 +85,21 @@ impl<'a> Slice<'a> {
     pub fn sheet(&self, p: Point) -> Option<(Vec3, f64)> {
         let (h, n) = (self.h(), self.directory().dimensions);
         let at: [f64; 2] = std::array::from_fn(|a| (p[a] / h[a]).clamp(0.0, (n[a] - 1) as f64));
-        let low = at.map(f64::floor);
-        let t = [at[0] - low[0], at[1] - low[1]];
+        // None is negative, so that a cast is the floor.
+        let low = at.map(|v| v as usize);
+        let t = [at[0] - low[0] as f64, at[1] - low[1] as f64];
+        let first = self.directory().entry([low[0], low[1], self.z]);
+        let one_brick = low.iter().all(|v| v % EDGE + 1 < EDGE);
         let mut corners = [(0.0, Sheet::default()); 4];
         for (k, corner) in corners.iter_mut().enumerate() {
             let weight = [1.0 - t[0], t[0]][k % 2] * [1.0 - t[1], t[1]][k / 2];
-            let voxel = [low[0] as usize + k % 2, low[1] as usize + k / 2, self.z];
-            if let (true, Some(entry)) = (weight > 0.0, self.directory().entry(voxel)) {
+            let entry = if one_brick {
+                first.map(|first| first + k / 2 * EDGE + k % 2)
+            } else {
+                let voxel = [low[0] + k % 2, low[1] + k / 2, self.z];
+                self.directory().entry(voxel)
+            };
+            if let (true, Some(entry)) = (weight > 0.0, entry) {
                 *corner = (weight, self.sheets[entry]);
             }
         }
@@ -216,19 +222,34 @@ impl<'a> Slice<'a> {
     pub fn cover(&mut self, p: Point, radius: f64, component: u32) {
         let h = self.h();
         let range = |a: usize| {
-            let from = ((p[a] - radius) / h[a]).ceil() as isize;
-            let to = ((p[a] + radius) / h[a]).floor() as isize;
-            from..=to
+            let from = -floor((radius - p[a]) / h[a]);
+            let to = floor((p[a] + radius) / h[a]);
+            (from.max(0) as usize, to)
         };
-        for y in range(1) {
-            for x in range(0) {
-                let (dx, dy) = (x as f64 * h[0] - p[0], y as f64 * h[1] - p[1]);
-                if dx * dx + dy * dy > radius * radius {
+        let ((left, right), (top, bottom)) = (range(0), range(1));
+        if right < 0 || bottom < 0 {
+            return;
+        }
+        let (right, bottom) = (right as usize, bottom as usize);
+        for by in top / EDGE..=bottom / EDGE {
+            for bx in left / EDGE..=right / EDGE {
+                let Some(brick) = self.directory().brick([bx, by, self.z / EDGE]) else {
                     continue;
-                }
-                if let Some(entry) = self.entry(x, y) {
-                    if self.component[entry] == component {
-                        self.flags[entry] |= COVERED;
+                };
+                let first = (brick - self.first_brick) * LAYER;
+                let (x, y) = (bx * EDGE, by * EDGE);
+                let (x, end) = (x.max(left), (x + EDGE - 1).min(right) + 1);
+                for y in y.max(top)..=(y + EDGE - 1).min(bottom) {
+                    let row = first + y % EDGE * EDGE + x % EDGE;
+                    let row = row..row + (end - x);
+                    let dy = y as f64 * h[1] - p[1];
+                    let pixels = self.flags[row.clone()]
+                        .iter_mut()
+                        .zip(&self.component[row]);
+                    for (x, (flags, &own)) in (x as u32..).zip(pixels) {
+                        let dx = f64::from(x) * h[0] - p[0];
+                        let within = dx * dx + dy * dy <= radius * radius;
+                        *flags |= COVERED * u8::from(within & (own == component));
                     }
                 }
             }
@@ -238,15 +259,22 @@ impl<'a> Slice<'a> {
     /// The connected regions (8 neighbours) of the pixels that are not covered.
     pub fn uncovered(&mut self, pixels: &[Pixel]) -> Vec<Vec<Pixel>> {
         let mut regions = Vec::new();
-        let open = |slice: &Self, p: [isize; 2], component| {
-            slice.component(p) == Some(component) && !slice.has(p, COVERED | QUEUED)
+        let open = |slice: &Self, [x, y]: [isize; 2], component| {
+            let entry = slice.entry(x, y)?;
+            let is_open =
+                slice.component[entry] == component && slice.flags[entry] & (COVERED | QUEUED) == 0;
+            is_open.then_some(entry)
         };
         for &seed in pixels {
             let at = seed.map(|v| v as isize);
-            let Some(component) = self.component(at).filter(|&c| open(self, at, c)) else {
+            let Some(entry) = self.entry(at[0], at[1]) else {
                 continue;
             };
-            self.set(at, QUEUED);
+            let component = self.component[entry];
+            if component == NOWHERE || self.flags[entry] & (COVERED | QUEUED) != 0 {
+                continue;
+            }
+            self.flags[entry] |= QUEUED;
             let mut region = vec![seed];
             let mut next = 0;
             while next < region.len() {
@@ -254,8 +282,8 @@ impl<'a> Slice<'a> {
                 next += 1;
                 for (dx, dy) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))) {
                     let p = [x + dx, y + dy];
-                    if open(self, p, component) {
-                        self.set(p, QUEUED);
+                    if let Some(entry) = open(self, p, component) {
+                        self.flags[entry] |= QUEUED;
                         region.push(p.map(|v| v as usize));
                     }
                 }

@@ -1,8 +1,8 @@
 //! Both faces of the label as seen from a point of the mid-surface: how thick the label is there,
 //! and how far off its middle the point lies.
 
-use crate::bricks::{EDGE, LAYER};
-use crate::grid::{along, length, unit, Vec3};
+use crate::bricks::{BRICK, EDGE, LAYER};
+use crate::grid::{along, length, round, unit, Vec3};
 use crate::interpolation::Sampler;
 
 /// Step along the ray, work units; the face is then found by bisection.
@@ -122,7 +122,7 @@ fn crossing(distance: &Sampler, from: Vec3, direction: Vec3, t: f64, step: f64) 
 
 /// Distance to the outside at the voxel nearest to a point, 0 outside the label.
 fn depth(distance: &Sampler, p: Vec3) -> f64 {
-    let voxel = std::array::from_fn(|a| (p[a] / distance.h[a]).round() as isize);
+    let voxel = std::array::from_fn(|a| round(p[a] / distance.h[a]));
     let entry = distance.directory.entry_at(voxel);
     entry.map_or(0.0, |entry| distance.field[entry].into())
 }
@@ -134,39 +134,41 @@ fn labelled(distance: &Sampler, p: Vec3) -> Option<f64> {
     if (0..3).any(|a| voxel[a] < 0.0 || voxel[a] > (dimensions[a] - 1) as f64) {
         return None;
     }
-    let low = voxel.map(|v| v.floor());
-    let t: Vec3 = std::array::from_fn(|a| voxel[a] - low[a]);
-    let low = low.map(|v| v as usize);
-    let mask = |entry: usize| f64::from(u8::from(distance.field[entry] > 0.0));
-    let weight = |corner: usize| -> f64 {
-        (0..3)
-            .map(|a| {
-                if corner >> a & 1 == 1 {
-                    t[a]
-                } else {
-                    1.0 - t[a]
-                }
-            })
-            .product()
-    };
+    // None is negative, so that a cast is the floor.
+    let low = voxel.map(|v| v as usize);
+    let t: Vec3 = std::array::from_fn(|a| voxel[a] - low[a] as f64);
+    let [x, y, z] = t.map(|t| [1.0 - t, t]);
+    let weight = |corner: usize| x[corner & 1] * y[corner >> 1 & 1] * z[corner >> 2];
+    let directory = distance.directory;
+    let mut sum = 0.0;
     if low.iter().all(|v| v % EDGE + 1 < EDGE) {
         // All eight voxels are in one brick.
-        let first = distance.directory.entry(low);
-        let offset =
-            |corner: usize| (corner >> 2) * LAYER + (corner >> 1 & 1) * EDGE + (corner & 1);
-        let sum = |first| {
-            (0..8)
-                .map(|corner| weight(corner) * mask(first + offset(corner)))
-                .sum()
+        let Some(first) = directory.entry(low) else {
+            return Some(0.0);
         };
-        return Some(first.map_or(0.0, sum));
+        let field = &distance.field[first..][..LAYER + EDGE + 2];
+        for corner in 0..8 {
+            let offset = (corner >> 2) * LAYER + (corner >> 1 & 1) * EDGE + (corner & 1);
+            let labelled = field[offset] > 0.0;
+            sum += if labelled { weight(corner) } else { 0.0 };
+        }
+        return Some(sum);
     }
-    let mut sum = 0.0;
+    // The corners are in up to eight bricks, mostly in two.
+    let mut brick = [None; 8];
+    let crosses: [usize; 3] = std::array::from_fn(|a| usize::from(low[a] % EDGE + 1 == EDGE));
     for corner in 0..8 {
-        let weight = weight(corner);
-        if weight > 0.0 {
-            let at: [usize; 3] = std::array::from_fn(|a| low[a] + (corner >> a & 1));
-            sum += weight * distance.directory.entry(at).map_or(0.0, mask);
+        let side: [usize; 3] = std::array::from_fn(|a| corner >> a & crosses[a]);
+        let first = side[0] | side[1] << 1 | side[2] << 2;
+        if corner == first {
+            let place = std::array::from_fn(|a| low[a] / EDGE + side[a]);
+            brick[corner] = directory.brick(place);
+        }
+        if let Some(brick) = brick[first] {
+            let [x, y, z]: [usize; 3] =
+                std::array::from_fn(|a| (low[a] + (corner >> a & 1)) % EDGE);
+            let labelled = distance.field[brick * BRICK + z * LAYER + y * EDGE + x] > 0.0;
+            sum += if labelled { weight(corner) } else { 0.0 };
         }
     }
     Some(sum)

@@ -28,6 +28,9 @@ const FARTHER: f64 = 1.8;
 /// Relative difference below which two lengths are the same: a change of units costs a last bit.
 pub(crate) const SAME: f64 = 1e-7;
 
+/// Passes over the slices that [`zip`] makes, for its progress.
+pub(crate) const PASSES: usize = 2;
+
 /// A triangle of point indices, with the line it stands on, which knows label and component.
 pub(crate) type Zipped = ([u32; 3], u32);
 
@@ -65,21 +68,17 @@ pub(crate) fn zip(polylines: &Polylines, execution: &mut Execution) -> Result<Ve
     };
     order.sort_by_key(key);
     let groups: Vec<&[u32]> = order.chunk_by(|a, b| key(a) == key(b)).collect();
-    let neighbours: Vec<[&[u32]; 2]> = groups
-        .windows(2)
-        .filter(|w| {
-            let (a, b) = (key(&w[0][0]), key(&w[1][0]));
+    let neighbours: Vec<usize> = (1..groups.len())
+        .filter(|&i| {
+            let (a, b) = (key(&groups[i - 1][0]), key(&groups[i][0]));
             (a.0, a.1) == (b.0, b.1) && a.2.checked_add(1) == Some(b.2)
         })
-        .map(|w| [w[0], w[1]])
         .collect();
+    let slices = execution.collect(groups.len(), |i| SliceEdges::new(polylines, groups[i]))?;
     let mut triangles = Vec::new();
     execution.stream(
         &neighbours,
-        |[below, above]| {
-            let sides = [below, above].map(|lines| SliceEdges::new(polylines, lines));
-            zip_slices(&sides[0], &sides[1])
-        },
+        |&i| zip_slices(&slices[i - 1], &slices[i]),
         |found: Vec<Zipped>| {
             let bytes = found.len() * std::mem::size_of::<Zipped>();
             triangles
