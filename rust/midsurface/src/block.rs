@@ -152,9 +152,7 @@ impl Block<f32> {
 
     #[inline(always)]
     fn row_at(&self, first: usize) -> &Row {
-        self.values[first..]
-            .first_chunk()
-            .unwrap_or(&[0.0; EDGE])
+        self.values[first..].first_chunk().unwrap_or(&[0.0; EDGE])
     }
 
     /// Gradient and Hessian in layer z of the brick, by central differences.

@@ -118,5 +118,6 @@ fn lower_envelope(
 
 #[inline(always)]
 fn largest(row: &[f32; EDGE]) -> f32 {
-    row.iter().fold(0.0, |most, v| if *v > most { *v } else { most })
+    row.iter()
+        .fold(0.0, |most, v| if *v > most { *v } else { most })
 }

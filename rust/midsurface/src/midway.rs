@@ -13,7 +13,7 @@ use crate::grid::{along, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::Surface;
-use crate::mesh::normals;
+use crate::mesh::{normals, NORMAL_PASSES};
 use crate::thickness::View;
 
 /// Sheet fraction below which the faces seen may be a rim's.
@@ -28,7 +28,7 @@ const MOVES: usize = 2;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 /// Passes over the points that [`move_midway`] makes, for its progress.
-pub(crate) const PASSES: usize = MOVES * (1 + ROUNDS);
+pub(crate) const PASSES: usize = MOVES * (1 + NORMAL_PASSES + ROUNDS);
 
 /// How far off each point is, and how much of that was seen there.
 type Seen = [f32; 2];
@@ -69,7 +69,7 @@ fn move_once(
         fraction,
         h,
     } = *label;
-    let normals = &normals(&surface.points, &surface.triangles);
+    let normals = &normals(&surface.points, &surface.triangles, fans, execution)?;
     let mut seen: Vec<Seen> = zeros(surface.points.len())?;
     let points = &surface.points;
     let source = &surface.source;

@@ -16,9 +16,10 @@ use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::extension::extend;
 use crate::grid::{Grid, Vec3};
+use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::{make_manifold, Surface};
-use crate::mesh::{is_degenerate, normals, turn_outward, Mesh};
+use crate::mesh::{is_degenerate, normals, turn_outward, Mesh, NORMAL_PASSES};
 use crate::midway::{self, move_midway, Label};
 use crate::profile::Profile;
 use crate::remesh::remesh;
@@ -97,7 +98,8 @@ pub(crate) fn ridge_surface(
         points: remeshed.points,
         triangles: remeshed.triangles,
     };
-    execution.stage("Flattening terraces", 0.94, 1.0, 1 + terraces::PASSES)?;
+    let passes = 1 + 2 * NORMAL_PASSES + terraces::PASSES;
+    execution.stage("Flattening terraces", 0.94, 1.0, passes)?;
     let mut found = sound(found, grid)?;
     flatten(&mut found, wanted, execution)?;
     append(batch, &distance, grid, sound(found, grid)?, mesh, execution)
@@ -110,7 +112,8 @@ fn flatten(surface: &mut Surface, edge: f64, execution: &mut Execution) -> Resul
         ..LineOfPoint::default()
     };
     let points = vec![point; surface.points.len()];
-    let normals = normals(&surface.points, &surface.triangles);
+    let fans = Fans::new(&surface.triangles, surface.points.len());
+    let normals = normals(&surface.points, &surface.triangles, &fans, execution)?;
     flatten_terraces(
         &mut surface.points,
         &surface.triangles,
@@ -227,7 +230,8 @@ fn append(
     execution: &mut Execution,
 ) -> Result<()> {
     let h = grid.work_spacing();
-    let normals = normals(&found.points, &found.triangles);
+    let fans = Fans::new(&found.triangles, found.points.len());
+    let normals = normals(&found.points, &found.triangles, &fans, execution)?;
     let mut thickness: Vec<f32> = zeros(found.points.len())?;
     execution.fill(&mut thickness, PIECE, |piece, out| {
         for (i, out) in out.iter_mut().enumerate() {

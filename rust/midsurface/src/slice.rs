@@ -243,9 +243,7 @@ impl<'a> Slice<'a> {
                     let row = first + y % EDGE * EDGE + x % EDGE;
                     let row = row..row + (end - x);
                     let dy = y as f64 * h[1] - p[1];
-                    let pixels = self.flags[row.clone()]
-                        .iter_mut()
-                        .zip(&self.component[row]);
+                    let pixels = self.flags[row.clone()].iter_mut().zip(&self.component[row]);
                     for (x, (flags, &own)) in (x as u32..).zip(pixels) {
                         let dx = f64::from(x) * h[0] - p[0];
                         let within = dx * dx + dy * dy <= radius * radius;
