@@ -20,19 +20,67 @@ const MOST: f64 = 1.5;
 /// Standard deviation of the average, in points, within the volume and at its border, where the
 /// error fades over a few voxels.
 const SIGMA: f64 = 4.0;
-const SIGMA_AT_BORDER: f64 = 1.5;
+const SIGMA_AT_BORDER: f64 = 1.0;
 /// Sheet fraction below which the faces seen may be the rim's.
 const RIM: f64 = 0.9;
 
-/// Moves the points of `line`, from which `views` have been taken, to the middle.
-pub(crate) fn centre(slice: &Slice, line: &mut Trace, views: &[Option<View>]) {
+/// The points that are moved.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Which {
+    All,
+    AtBorder,
+}
+
+/// Points with both faces in view that tell one with a single face how thick the sheet is.
+const WITNESSES: usize = 9;
+
+/// In a corner of the volume no line across the sheet sees both faces. Where one is seen, the
+/// middle is half a thickness from it: that of the nearest points of the line that see both.
+pub(crate) fn complete(views: &mut [Option<View>]) {
+    let thickness: Vec<(usize, f64)> = views
+        .iter()
+        .enumerate()
+        .filter_map(|(i, view)| view.as_ref().map(|view| (i, view)))
+        .filter(|(_, view)| view.to_middle.is_some())
+        .map(|(i, view)| (i, view.thickness))
+        .collect();
+    for (i, view) in views.iter_mut().enumerate() {
+        let Some((view, face)) = view.as_mut().and_then(|v| v.one_face.map(|face| (v, face)))
+        else {
+            continue;
+        };
+        let after = thickness.partition_point(|(at, _)| *at < i);
+        let first = after.saturating_sub(WITNESSES / 2 + 1);
+        let last = (first + WITNESSES).min(thickness.len());
+        let mut near: Vec<f64> = thickness[last.saturating_sub(WITNESSES)..last]
+            .iter()
+            .map(|(_, thick)| *thick)
+            .collect();
+        if near.is_empty() {
+            continue;
+        }
+        let middle = near.len() / 2;
+        view.thickness = *near.select_nth_unstable_by(middle, f64::total_cmp).1;
+        view.to_middle = Some(face - (0.5 * view.thickness).copysign(face));
+    }
+}
+
+/// Moves the points of `line`, from which `views` have been taken, to the middle. That may be
+/// beyond the border of the volume, or off it for an end on it: `ends.rs` sees to that.
+pub(crate) fn centre(slice: &Slice, line: &mut Trace, views: &[Option<View>], which: Which) {
+    let last = line.points.len().saturating_sub(1);
+    let is_end = |i: usize| !line.closed && (i == 0 || i == last);
     let moves: Vec<Option<Point>> = views
         .iter()
         .zip(&line.points)
-        .map(|(view, &p)| needed_move(slice, view.as_ref()?, p))
+        .enumerate()
+        .map(|(i, (view, &p))| needed_move(slice, view.as_ref()?, slice.clamp(p), is_end(i)))
         .collect();
     for (i, view) in views.iter().enumerate() {
         let at_border = view.as_ref().is_some_and(|view| view.at_border);
+        if which == Which::AtBorder && !at_border {
+            continue;
+        }
         let sigma = if at_border { SIGMA_AT_BORDER } else { SIGMA };
         // In a corner of the volume no line sees both faces: what its neighbours need is taken.
         let missing = at_border && moves[i].is_none();
@@ -46,14 +94,14 @@ pub(crate) fn centre(slice: &Slice, line: &mut Trace, views: &[Option<View>]) {
             let length = (mean[0] * mean[0] + mean[1] * mean[1]).sqrt();
             let scale = (length - UNCERTAIN).clamp(0.0, MOST) / length.max(1e-12);
             let p = line.points[i];
-            line.points[i] = slice.clamp([p[0] + scale * mean[0], p[1] + scale * mean[1]]);
+            line.points[i] = [p[0] + scale * mean[0], p[1] + scale * mean[1]];
         }
     }
 }
 
 /// The move within the slice that brings a point to the middle; normals have no sign of their own,
 /// so that moves can be averaged and offsets cannot.
-fn needed_move(slice: &Slice, view: &View, p: Point) -> Option<Point> {
+fn needed_move(slice: &Slice, view: &View, p: Point, is_end: bool) -> Option<Point> {
     let least = if view.at_border {
         LEAST_AT_BORDER
     } else {
@@ -64,8 +112,8 @@ fn needed_move(slice: &Slice, view: &View, p: Point) -> Option<Point> {
         return None;
     }
     let [x, y, _] = view.normal;
-    // A point on the volume's border stays on it.
-    let on_border = slice.on_border(p);
+    // A line along the volume's border stays on it.
+    let on_border = slice.on_border(p).map(|on| on && !is_end);
     let across = [
         if on_border[0] { 0.0 } else { x },
         if on_border[1] { 0.0 } else { y },

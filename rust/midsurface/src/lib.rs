@@ -39,6 +39,7 @@
 #![forbid(unsafe_code)]
 
 mod block;
+mod border;
 mod bricks;
 mod buckets;
 mod centre;
@@ -47,6 +48,7 @@ mod contour;
 mod crest;
 mod distance;
 mod eigen;
+mod ends;
 mod error;
 mod execution;
 mod extension;

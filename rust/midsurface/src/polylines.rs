@@ -6,9 +6,11 @@
 //! the slices, as at the caps of a closed surface, a component is a disk without a mid-line: it is
 //! counted, and the caller says so.
 
+use crate::border::normal_near_border;
 use crate::bricks::{Batch, Directory};
-use crate::centre::centre;
+use crate::centre::{centre, complete, Which};
 use crate::components::Part;
+use crate::ends::{ends_on_border, put_on_border, Line};
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::{Grid, Vec3};
@@ -17,7 +19,7 @@ use crate::resample::{arc_length, distance, resample};
 use crate::ridge::RidgeField;
 use crate::runs::Run;
 use crate::slice::{Pixel, Point, Slice, COVERED};
-use crate::thickness::View;
+use crate::thickness::{depth, View};
 use crate::trace::{trace, Trace};
 
 /// Distance of neighbouring points on a line, in units of the finest spacing (the paper's √2).
@@ -63,7 +65,7 @@ pub struct Polyline {
 /// The lines of one slice of a part, work units.
 #[derive(Default)]
 struct SliceLines {
-    lines: Vec<(Trace, Vec<f64>)>,
+    lines: Vec<Line>,
     disks: usize,
 }
 
@@ -133,7 +135,10 @@ impl<'a> PartField<'a> {
     fn view(&self, slice: &Slice, p: Point) -> Option<View> {
         let from = [p[0], p[1], slice.z as f64 * self.h[2]];
         let (normal, _) = slice.sheet(p)?;
-        Some(View::new(&self.sampler(&self.field.distance), from, normal))
+        let distance = self.sampler(&self.field.distance);
+        let thickness = 2.0 * depth(&distance, from);
+        let normal = normal_near_border(&distance, &self.field.sheets, from, normal, thickness);
+        Some(View::new(&distance, from, normal))
     }
 }
 
@@ -165,9 +170,21 @@ fn trace_slice(part: PartField, runs: &[Run]) -> SliceLines {
 }
 
 /// Moves a line's points to the middle between both faces, and measures the thickness there.
-fn finish(part: PartField, slice: &Slice, mut line: Trace) -> (Trace, Vec<f64>) {
-    let views: Vec<Option<View>> = line.points.iter().map(|&p| part.view(slice, p)).collect();
-    centre(slice, &mut line, &views);
+fn finish(part: PartField, slice: &Slice, mut line: Trace) -> Line {
+    let mut views: Vec<Option<View>> = line.points.iter().map(|&p| part.view(slice, p)).collect();
+    complete(&mut views);
+    let ends = ends_on_border(slice, &line);
+    centre(slice, &mut line, &views, Which::All);
+    if views.iter().flatten().any(|view| view.at_border) {
+        // Far off the middle a point sees the faces of other places than its own.
+        for (view, &p) in views.iter_mut().zip(&line.points) {
+            if view.as_ref().is_some_and(|view| view.at_border) {
+                *view = part.view(slice, slice.clamp(p)).or(view.take());
+            }
+        }
+        complete(&mut views);
+        centre(slice, &mut line, &views, Which::AtBorder);
+    }
     let known = |i: usize| views[i].as_ref().map(|view| view.thickness);
     // A point at a corner may see no sheet: it takes its neighbour's thickness.
     let nearest = |i: usize| {
@@ -176,10 +193,16 @@ fn finish(part: PartField, slice: &Slice, mut line: Trace) -> (Trace, Vec<f64>) 
             before.or_else(|| (i + k < views.len()).then(|| known(i + k)).flatten())
         })
     };
-    let thickness = (0..views.len())
-        .map(|i| nearest(i).unwrap_or(0.0))
-        .collect();
-    (line, thickness)
+    let mut line = Line {
+        thickness: (0..views.len())
+            .map(|i| nearest(i).unwrap_or(0.0))
+            .collect(),
+        points: line.points,
+        closed: line.closed,
+    };
+    let unit = slice.h()[0].min(slice.h()[1]);
+    put_on_border(slice, &mut line, ends, SPACING * unit);
+    line
 }
 
 /// The line from the peak of a region, `None` where there is none worth keeping. Covers what
@@ -291,7 +314,7 @@ fn half_width(slice: &Slice, p: Point, tangent: Point, component: u32) -> f64 {
 /// Moves a slice's lines into world coordinates and appends them.
 fn append(polylines: &mut Polylines, found: SliceLines, part: &Part, z: u32, grid: &Grid) {
     let h = grid.work_spacing();
-    for (line, thickness) in found.lines {
+    for line in found.lines {
         polylines.lines.push(Polyline {
             first: polylines.points.len(),
             count: line.points.len(),
@@ -302,7 +325,7 @@ fn append(polylines: &mut Polylines, found: SliceLines, part: &Part, z: u32, gri
         });
         let world = |p: &Point| grid.world([p[0] / h[0], p[1] / h[1], f64::from(z)]);
         polylines.points.extend(line.points.iter().map(world));
-        let scaled = thickness.iter().map(|t| (t * grid.unit()) as f32);
+        let scaled = line.thickness.iter().map(|t| (t * grid.unit()) as f32);
         polylines.thickness.extend(scaled);
     }
 }

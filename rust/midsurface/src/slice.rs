@@ -175,6 +175,26 @@ impl<'a> Slice<'a> {
         (0..2).all(|a| p[a] >= 0.0 && p[a] <= (n[a] - 1) as f64 * h[a])
     }
 
+    /// Where the straight way from p, in the volume, to q, beyond it, meets the border.
+    pub fn way_out(&self, p: Point, q: Point) -> Point {
+        let (h, n) = (self.h(), self.directory().dimensions);
+        let share = |a: usize| {
+            let border = if q[a] < 0.0 {
+                0.0
+            } else {
+                (n[a] - 1) as f64 * h[a]
+            };
+            let beyond = q[a] < 0.0 || q[a] > border;
+            if beyond {
+                (border - p[a]) / (q[a] - p[a])
+            } else {
+                1.0
+            }
+        };
+        let t = share(0).min(share(1)).clamp(0.0, 1.0);
+        self.clamp(std::array::from_fn(|a| p[a] + t * (q[a] - p[a])))
+    }
+
     /// Whether a point lies on a border of the volume across x, and across y.
     pub fn on_border(&self, p: Point) -> [bool; 2] {
         let (h, n) = (self.h(), self.directory().dimensions);

@@ -24,6 +24,9 @@ pub(crate) struct View {
     pub thickness: f64,
     /// How far along the normal the middle is, where both faces are seen.
     pub to_middle: Option<f64>,
+    /// How far along the normal the one face is that is seen where the other lies outside the
+    /// volume; negative behind the point.
+    pub one_face: Option<f64>,
     /// Whether a border of the volume cuts off what the ridge field should have seen here.
     pub at_border: bool,
 }
@@ -57,9 +60,20 @@ impl View {
             .find(|(_, faces)| both(faces))
             .or(looks.first());
         let (cosine, sideways) = best.map_or((1.0, None), |(c, faces)| (*c, Some(*faces)));
-        let faces = match sideways.unwrap_or(ahead) {
-            [Reach::Face(a), Reach::Face(b)] => Some([a * cosine, b * cosine]),
-            _ => None,
+        // In a corner one way may see the one face, and another way the other.
+        let seen = |side: usize| {
+            let first = std::iter::once((cosine, sideways.unwrap_or(ahead)));
+            let mut ways = first.chain(looks.iter().copied()).chain([(1.0, ahead)]);
+            ways.find_map(|(cosine, faces)| match faces[side] {
+                Reach::Face(t) => Some(t * cosine),
+                Reach::Border => None,
+            })
+        };
+        let (faces, one_face) = match (seen(0), seen(1)) {
+            (Some(a), Some(b)) => (Some([a, b]), None),
+            (Some(a), None) => (None, Some(a)),
+            (None, Some(b)) => (None, Some(-b)),
+            (None, None) => (None, None),
         };
         let thickness = match (ahead, faces, sideways) {
             ([Reach::Face(a), Reach::Face(b)], ..) | (_, Some([a, b]), _) => a + b,
@@ -71,6 +85,7 @@ impl View {
             normal,
             thickness,
             to_middle,
+            one_face,
             at_border,
         }
     }
@@ -121,7 +136,7 @@ fn crossing(distance: &Sampler, from: Vec3, direction: Vec3, t: f64, step: f64) 
 }
 
 /// Distance to the outside at the voxel nearest to a point, 0 outside the label.
-fn depth(distance: &Sampler, p: Vec3) -> f64 {
+pub(crate) fn depth(distance: &Sampler, p: Vec3) -> f64 {
     let voxel = std::array::from_fn(|a| round(p[a] / distance.h[a]));
     let entry = distance.directory.entry_at(voxel);
     entry.map_or(0.0, |entry| distance.field[entry].into())

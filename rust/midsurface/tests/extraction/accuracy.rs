@@ -94,7 +94,7 @@ fn upright_sheets_6_thick_with_a_hole() {
 
 #[test]
 fn leaning_sheets_2_thick_with_a_hole() {
-    sheets_with_a_hole(&[10.0, 20.0, 30.0, 40.0], 2.0, STRICT);
+    sheets_with_a_hole(&[10.0, 20.0, 30.0, 40.0, 45.0], 2.0, STRICT);
 }
 
 #[test]
@@ -104,12 +104,12 @@ fn leaning_sheets_3_thick_with_a_hole() {
 
 #[test]
 fn leaning_sheets_6_thick_with_a_hole() {
-    // Where a sheet leaves through a corner of the volume no line across it sees both faces.
-    let limits = Limits {
-        rms: 0.115,
-        covered: 0.996,
-    };
-    sheets_with_a_hole(&[10.0, 20.0, 30.0, 45.0], 6.0, limits);
+    sheets_with_a_hole(&[10.0, 30.0, 40.0, 45.0], 6.0, STRICT);
+    let at = |azimuth| sheet_with_a_hole(20.0, azimuth, 6.0);
+    assert_all_match([0.0, 17.0, 33.0, 75.0].map(at), STRICT);
+    // Here every second slice is nearly the same: terraces 33 slices long, which no low-pass that
+    // spares the bends of membranes removes.
+    assert_all_match([at(45.0)], complete_within(0.102));
 }
 
 #[test]
