@@ -15,7 +15,7 @@ static void version_is_a_number(void)
 static void defaults_are_as_documented(void)
 {
   const midsurface_options options = midsurface_options_default();
-  CHECK(options.method == MIDSURFACE_METHOD_POLYLINE_ZIPPER);
+  CHECK(options.method == MIDSURFACE_METHOD_RIDGE_SURFACE);
   CHECK(options.threads == 0);
   CHECK(options.edge_length == 0.0);
   CHECK(options.labels == NULL);
@@ -132,10 +132,10 @@ static void unknown_numbers_are_refused(void)
   options.method = UINT32_MAX;
   CHECK_INVALID(
     midsurface_extract(&volume, &options, &mesh, &error), error, "`options.method` is 4294967295");
-  options.method = MIDSURFACE_METHOD_RIDGE_SURFACE;
+  options.method = MIDSURFACE_METHOD_POLYLINE_ZIPPER;
   CHECK_SUCCEEDS(midsurface_extract(&volume, &options, &mesh, &error), error);
   midsurface_mesh_free(mesh);
-  options.method = MIDSURFACE_METHOD_POLYLINE_ZIPPER;
+  options.method = MIDSURFACE_METHOD_RIDGE_SURFACE;
   options.edge_length = -1.5;
   CHECK_INVALID(midsurface_extract(&volume, &options, &mesh, &error), error, "edge length -1.5");
   options.edge_length = 0.0;

@@ -68,7 +68,8 @@ static void the_lines_of_a_tube_are_closed(void)
 /* Out as arrays, in again, zipped: the one call's mesh. */
 static void check_round_trip(const midsurface_volume* volume)
 {
-  const midsurface_options options = midsurface_options_default();
+  midsurface_options options = midsurface_options_default();
+  options.method = MIDSURFACE_METHOD_POLYLINE_ZIPPER;
   midsurface_error* error = NULL;
   midsurface_polylines* lines = traced(volume);
   const midsurface_polyline_arrays arrays = arrays_of_lines(lines);

@@ -50,7 +50,9 @@ bool SameMesh(const midsurface_mesh_arrays& a, const midsurface_mesh_arrays& b)
 void TheChainGivesTheOneCallsMesh()
 {
   Sheets sheets;
-  const midsurface::Mesh mesh = midsurface::Extract(sheets.Volume);
+  Options options;
+  options.Method = MIDSURFACE_METHOD_POLYLINE_ZIPPER;
+  const midsurface::Mesh mesh = midsurface::Extract(sheets.Volume, options);
   const midsurface::Polylines lines = midsurface::ExtractPolylines(sheets.Volume);
   const midsurface::Polylines copy = midsurface::MakePolylines(midsurface::Arrays(lines));
   const midsurface::Mesh zipped = midsurface::Zip(copy);

@@ -133,7 +133,7 @@ typedef enum midsurface_method {
    */
   MIDSURFACE_METHOD_POLYLINE_ZIPPER = 0,
   /**
-   * The crest of the ridge field in every direction.
+   * A surface midway between both faces of the membrane, in whichever direction it lies.
    */
   MIDSURFACE_METHOD_RIDGE_SURFACE,
 } midsurface_method;
@@ -219,7 +219,7 @@ typedef struct midsurface_volume {
  */
 typedef struct midsurface_options {
   /**
-   * A midsurface_method; any other value is refused. Default: the polyline zipper.
+   * A midsurface_method; any other value is refused. Default: the ridge surface.
    */
   uint32_t method;
   /**
@@ -557,7 +557,7 @@ enum midsurface_status midsurface_mesh_check(const struct midsurface_mesh *mesh,
 void midsurface_mesh_free(struct midsurface_mesh *mesh);
 
 /**
- * The default options: polyline zipper, all cores, all labels, no callbacks.
+ * The default options: ridge surface, all cores, all labels, no callbacks.
  */
 struct midsurface_options midsurface_options_default(void);
 

@@ -48,7 +48,7 @@ using Statistics = std::unique_ptr<midsurface_statistics, Deleter<midsurface_sta
 /// What a run may be told; the default is right for most.
 struct Options
 {
-  std::uint32_t Method = MIDSURFACE_METHOD_POLYLINE_ZIPPER;
+  std::uint32_t Method = MIDSURFACE_METHOD_RIDGE_SURFACE;
   std::uint32_t Threads = 0;                         ///< 0: one a core.
   double EdgeLength = 0.0;                           ///< 0: chosen by the finest spacing.
   std::optional<std::vector<std::int64_t>> Labels;   ///< Absent: all; empty: none.

@@ -14,7 +14,7 @@ use crate::error::{c_string, guarded_value, midsurface_error};
 pub enum midsurface_method {
     /// A line in every slice along z, the lines of neighbouring slices joined by triangles.
     PolylineZipper = 0,
-    /// The crest of the ridge field in every direction.
+    /// A surface midway between both faces of the membrane, in whichever direction it lies.
     RidgeSurface,
 }
 
@@ -23,7 +23,7 @@ pub enum midsurface_method {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct midsurface_options {
-    /// A midsurface_method; any other value is refused. Default: the polyline zipper.
+    /// A midsurface_method; any other value is refused. Default: the ridge surface.
     pub method: u32,
     /// Number of worker threads; 0, the default: one a core. The result does not depend on it.
     pub threads: u32,
@@ -49,11 +49,11 @@ pub struct midsurface_options {
     pub user: *mut c_void,
 }
 
-/// The default options: polyline zipper, all cores, all labels, no callbacks.
+/// The default options: ridge surface, all cores, all labels, no callbacks.
 #[no_mangle]
 pub extern "C" fn midsurface_options_default() -> midsurface_options {
     let default = midsurface_options {
-        method: midsurface_method::PolylineZipper as u32,
+        method: midsurface_method::RidgeSurface as u32,
         threads: 0,
         edge_length: 0.0,
         labels: ptr::null(),

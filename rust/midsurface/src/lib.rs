@@ -106,10 +106,10 @@ pub use volume::{Label, Scalars, Volume};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Method {
     /// The paper's method: a line in every slice along z, neighbouring lines zipped together.
-    #[default]
     PolylineZipper,
-    /// The crest of the ridge field in every direction: membranes that lie flat in the slices,
-    /// too.
+    /// The default: a surface midway between both faces, in whichever direction the membrane lies,
+    /// flat in the slices, too.
+    #[default]
     RidgeSurface,
 }
 

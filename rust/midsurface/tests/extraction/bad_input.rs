@@ -1,6 +1,6 @@
 //! What is no segmentation gets an error or a warning that says so, never silence or a crash.
 
-use midsurface::{extract, Error, Grid, Label, Mesh, Options, Quiet, Result, Volume};
+use midsurface::{extract, Error, Grid, Label, Mesh, Method, Options, Quiet, Result, Volume};
 
 use crate::measure::extract_all;
 
@@ -10,6 +10,7 @@ fn run<T: Label>(
     wanted: Option<Vec<i64>>,
 ) -> Result<(Mesh, Vec<String>)> {
     let options = Options {
+        method: Method::PolylineZipper,
         labels: wanted,
         ..Options::default()
     };

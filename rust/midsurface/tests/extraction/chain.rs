@@ -1,6 +1,8 @@
 //! The stages one by one give the one click's mesh exactly.
 
-use midsurface::{extract, mid_polylines, zip_polylines, Grid, Options, Polylines, Quiet, Volume};
+use midsurface::{
+    extract, mid_polylines, zip_polylines, Grid, Method, Options, Polylines, Quiet, Volume,
+};
 use phantoms::*;
 
 use crate::measure::{assert_sound, grid};
@@ -14,6 +16,10 @@ fn lines_of(labels: &[u8], grid: Grid, options: &Options) -> Polylines {
 
 fn assert_chain(labels: &[u8], grid: Grid, options: &Options) {
     let volume = Volume::new(labels, grid.clone()).expect("a sound volume");
+    let options = &Options {
+        method: Method::PolylineZipper,
+        ..options.clone()
+    };
     let whole = extract(&volume, options, &mut Quiet::default()).expect("a mesh");
     let lines = lines_of(labels, grid, options);
     let zipped = zip_polylines(&lines, options, &mut Quiet::default()).expect("a mesh");

@@ -1,6 +1,6 @@
 //! Threads do not change the mesh; progress goes forward; a cancelled run stops at once.
 
-use midsurface::{extract, mid_polylines, Error, Grid, Mesh, Options, Result, Volume};
+use midsurface::{extract, mid_polylines, Error, Grid, Mesh, Method, Options, Result, Volume};
 use phantoms::*;
 
 use crate::measure::grid;
@@ -31,6 +31,7 @@ fn run<T: midsurface::Label>(
     extract(
         &volume,
         &Options {
+            method: Method::PolylineZipper,
             threads,
             ..Options::default()
         },

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use midsurface::{extract, find_labels, Grid, Label, Mesh, Options, Quiet, Volume};
+use midsurface::{extract, find_labels, Grid, Label, Mesh, Method, Options, Quiet, Volume};
 use phantoms::*;
 
 use crate::measure::{assert_matches, assert_sound, complete_within, extract_all, grid, mesh_of};
@@ -66,10 +66,14 @@ fn a_label_gives_the_same_surface_alone_and_beside_another() {
     }
     let labels = sheets(dimensions, &[(1, 4, 12), (7, 8, 12), (3, 24, 12)]);
     let volume = Volume::new(&labels, Grid::new(dimensions)).expect("a sound volume");
-    let all = extract(&volume, &Options::default(), &mut Quiet::default()).expect("a mesh");
+    let options = Options {
+        method: Method::PolylineZipper,
+        ..Options::default()
+    };
+    let all = extract(&volume, &options, &mut Quiet::default()).expect("a mesh");
     let options = Options {
         labels: Some(vec![7]),
-        ..Options::default()
+        ..options
     };
     let chosen = extract(&volume, &options, &mut Quiet::default()).expect("a mesh");
     assert_sound(&chosen);
@@ -156,7 +160,11 @@ fn every_scalar_type_gives_the_same_mesh() {
 fn above<T: Label>(map: &[T], dimensions: [usize; 3], threshold: f64) -> Mesh {
     let volume = Volume::new(map, Grid::new(dimensions)).expect("usable");
     let volume = volume.with_threshold(threshold).expect("a number");
-    extract(&volume, &Options::default(), &mut Quiet::default()).expect("a mesh")
+    let options = Options {
+        method: Method::PolylineZipper,
+        ..Options::default()
+    };
+    extract(&volume, &options, &mut Quiet::default()).expect("a mesh")
 }
 
 #[test]

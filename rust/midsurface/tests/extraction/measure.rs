@@ -1,6 +1,6 @@
 //! Extracts the mid-surface of a phantom and asserts what holds for every mesh.
 
-use midsurface::{extract, Grid, Label, Mesh, Options, Quiet, Volume};
+use midsurface::{extract, Grid, Label, Mesh, Method, Options, Quiet, Volume};
 use phantoms::{connectivity, judge, Frame, Phantom, Report};
 
 /// The phantom's frame as the core knows it.
@@ -32,11 +32,15 @@ pub fn assert_sound(mesh: &Mesh) {
     }
 }
 
-/// The mid-surface of all labels, and the warnings.
+/// The polyline zipper's mid-surface of all labels, and the warnings.
 pub fn extract_all<T: Label>(labels: &[T], grid: Grid) -> (Mesh, Vec<String>) {
     let volume = Volume::new(labels, grid).expect("a sound volume");
     let mut observer = Quiet::default();
-    let mesh = extract(&volume, &Options::default(), &mut observer).expect("a mesh");
+    let options = Options {
+        method: Method::PolylineZipper,
+        ..Options::default()
+    };
+    let mesh = extract(&volume, &options, &mut observer).expect("a mesh");
     assert_sound(&mesh);
     (mesh, observer.warnings)
 }

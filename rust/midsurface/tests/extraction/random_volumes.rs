@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use midsurface::{extract, mid_polylines, zip_polylines, Grid, Options, Quiet, Volume};
+use midsurface::{extract, mid_polylines, zip_polylines, Grid, Method, Options, Quiet, Volume};
 use proptest::prelude::*;
 
 use crate::measure::assert_sound;
@@ -103,6 +103,7 @@ fn waves(grid: &Grid) -> BoxedStrategy<Vec<u8>> {
 fn assert_extracts(case: &Case) {
     let volume = Volume::new(&case.labels, case.grid.clone()).expect("a sound volume");
     let options = Options {
+        method: Method::PolylineZipper,
         labels: case.wanted.clone(),
         threads: case.threads,
         ..Options::default()
