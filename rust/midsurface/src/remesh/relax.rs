@@ -54,29 +54,33 @@ fn centre(patch: &Patch, ring: &[u32]) -> Vec3 {
     sum.map(|v| v / ring.len() as f64)
 }
 
-/// A boundary point on its way to the middle between its neighbours along the curve.
-fn slid(patch: &Patch, p: u32, share: f64) -> Option<Vertex> {
+/// The ways from a boundary point to its neighbours along the curve, back and ahead.
+fn ways_to_neighbours(patch: &Patch, p: u32) -> Option<[f64; 2]> {
     let [before, after] = patch
         .along_boundary(p)?
         .map(|q| patch.vertices[q as usize].parameter);
     let vertex = &patch.vertices[p as usize];
     let curve = &patch.reference.curve;
-    let back = curve.distance(vertex.at, before, vertex.parameter);
-    let ahead = curve.distance(vertex.at, vertex.parameter, after);
+    Some([
+        curve.distance(vertex.at, before, vertex.parameter),
+        curve.distance(vertex.at, vertex.parameter, after),
+    ])
+}
+
+/// A boundary point on its way to the middle between its neighbours along the curve.
+fn slid(patch: &Patch, p: u32, share: f64) -> Option<Vertex> {
+    let [back, ahead] = ways_to_neighbours(patch, p)?;
     slid_by(patch, p, share * 0.5 * (ahead - back))
 }
 
 /// A boundary point that has slid some way along the curve, but not up to a neighbour.
 pub(super) fn slid_by(patch: &Patch, p: u32, way: f64) -> Option<Vertex> {
-    let [before, after] = patch
-        .along_boundary(p)?
-        .map(|q| patch.vertices[q as usize].parameter);
-    let vertex = &patch.vertices[p as usize];
-    let curve = &patch.reference.curve;
-    let back = curve.distance(vertex.at, before, vertex.parameter);
-    let ahead = curve.distance(vertex.at, vertex.parameter, after);
+    let [back, ahead] = ways_to_neighbours(patch, p)?;
     let way = way.clamp(-0.8 * back, 0.8 * ahead);
-    Some(curve.vertex(patch.reference, vertex.at, vertex.parameter + way))
+    let Patch { reference, .. } = patch;
+    let vertex = &patch.vertices[p as usize];
+    let parameter = vertex.parameter + way;
+    Some(reference.curve.vertex(reference, vertex.at, parameter))
 }
 
 /// Whether the triangles around a point remain good if it moves: none turns away from the surface
