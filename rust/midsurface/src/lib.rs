@@ -86,7 +86,7 @@ mod volume;
 mod weld;
 mod zipper;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use ndarray::ArrayViewMut3;
 
@@ -266,21 +266,50 @@ fn find_ridge_surface(
     execution: &mut Execution,
 ) -> Result<Mesh> {
     let mut mesh = Mesh::default();
-    let parts = for_each_batch(volume, options, execution, 1.0, |parts, execution| {
+    if volume.grid.dimensions.contains(&1) {
+        read_parts(volume, options, execution)?;
+        execution.warning(
+            "there is no surface: the volume is a single slice, in which a membrane is a line",
+        );
+        execution.finish()?;
+        return Ok(mesh);
+    }
+    let mut without: BTreeMap<i64, usize> = BTreeMap::new();
+    for_each_batch(volume, options, execution, 1.0, |parts, execution| {
+        let first = mesh.triangles.len();
         ridge_surface::ridge_surface(
             parts,
             &volume.grid,
             options.edge_length,
             &mut mesh,
             execution,
-        )
+        )?;
+        let found: BTreeSet<u32> = mesh.components[first..].iter().copied().collect();
+        for component in parts.chunk_by(|a, b| a.component == b.component) {
+            if !found.contains(&component[0].component) {
+                *without.entry(component[0].label).or_default() += 1;
+            }
+        }
+        Ok(())
     })?;
-    if mesh.triangles.is_empty() && parts > 0 {
-        execution.warning("there is no surface: the labels hold no sheet that could be followed");
-    }
+    warn_of_components_without(&without, execution);
     warn_if_far(&mesh, execution);
     execution.finish()?;
     Ok(mesh)
+}
+
+/// Warns of the components without a surface, counted for each label.
+fn warn_of_components_without(without: &BTreeMap<i64, usize>, execution: &mut Execution) {
+    for (label, count) in without.iter().take(MOST_LISTED) {
+        execution.warning(&format!(
+            "Label {label}: {count} of its separate pieces gave no surface, since they hold no \
+             sheet that could be followed"
+        ));
+    }
+    if without.len() > MOST_LISTED {
+        let more = without.len() - MOST_LISTED;
+        execution.warning(&format!("{more} more labels have pieces without a surface"));
+    }
 }
 
 /// Takes what is left of the progress.
@@ -392,6 +421,9 @@ fn batches(parts: &[Part]) -> Vec<&[Part]> {
     batches
 }
 
+/// The most labels that a message names.
+const MOST_LISTED: usize = 20;
+
 /// The parts of the wanted labels; tells the user what is missing or left out.
 fn read_parts(volume: &Volume, options: &Options, execution: &mut Execution) -> Result<Vec<Part>> {
     let wanted: Option<BTreeSet<i64>> =
@@ -434,7 +466,7 @@ fn report_labels(
         return Ok(());
     }
     let list = |labels: &mut dyn Iterator<Item = &i64>| {
-        let names: Vec<String> = labels.take(20).map(i64::to_string).collect();
+        let names: Vec<String> = labels.take(MOST_LISTED).map(i64::to_string).collect();
         names.join(", ")
     };
     let absent = list(&mut wanted.difference(present));

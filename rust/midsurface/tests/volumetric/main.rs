@@ -1,10 +1,11 @@
-//! The ridge surface from outside: on phantoms whose mid-surface is known, clean and noisy, and on
-//! real volumes. One program, so that it is linked once.
+//! The ridge surface from outside: on phantoms whose mid-surface is known, clean and noisy, on real
+//! volumes, and where there is none. One program, so that it is linked once.
 
 #[path = "../extraction/image_file.rs"]
 mod image_file;
 mod phantoms_known;
 mod real_volumes;
+mod warnings;
 
 use midsurface::{extract, Grid, Mesh, Method, Options, Quiet, Volume};
 
