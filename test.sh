@@ -29,6 +29,11 @@ RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --release
 
 say "Rust: tests"
 cargo test --locked --workspace --release
+say "Rust: sanitizers and fuzz targets"
+tests/sanitizers.sh
+say "Rust: the crates and the oldest version"
+cargo metadata --format-version 1 --locked | python3 tests/licences.py
+tests/oldest_rust.sh
 
 say "C, C++ and pvpython: tests"
 with_display ctest --test-dir build --output-on-failure

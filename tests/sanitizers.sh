@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The core's tests and the fuzz targets under AddressSanitizer, for a bounded time.
+# The core's unit tests and the fuzz targets under AddressSanitizer, for a bounded time.
 #
 #     sanitizers.sh [SECONDS]
 #
@@ -20,15 +20,15 @@ export RUSTC_BOOTSTRAP=1
 export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/build/cargo}/sanitizers"
 export CARGO_PROFILE_RELEASE_LTO=off ASAN_OPTIONS=detect_leaks=1
 
-echo "-- The core's tests"
+echo "-- The core's unit tests"
 RUSTFLAGS="-Zsanitizer=address" cargo test --locked --quiet --release --target "$target" \
-  -p midsurface --lib --test extraction
+  -p midsurface --lib
 
 echo "-- Fuzz targets, $seconds s each"
 coverage="-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4
   -Cllvm-args=-sanitizer-coverage-inline-8bit-counters
   -Cllvm-args=-sanitizer-coverage-pc-table -Cllvm-args=-sanitizer-coverage-trace-compares"
-RUSTFLAGS="-Zsanitizer=address --cfg fuzzing -Ccodegen-units=1 ${coverage//$'\n'/ }" \
+RUSTFLAGS="-Zsanitizer=address --cfg fuzzing -Ccodegen-units=1 $(echo $coverage)" \
   cargo build --locked --quiet --release --target "$target" --manifest-path fuzz/Cargo.toml
 mkdir -p fuzz/artifacts
 for name in volume polylines triangles; do
@@ -37,6 +37,10 @@ for name in volume polylines triangles; do
   echo "$program"
   # The folder named first gets what is new; the kept corpus stays as it is.
   "$program" "$found" "fuzz/corpus/$name" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=3000 \
-    -max_len=600 -artifact_prefix=fuzz/artifacts/ -print_final_stats=1 -verbosity=0 2>&1 | tail -n 30
-  rm -rf "$found"
+    -max_len=600 -artifact_prefix=fuzz/artifacts/ -print_final_stats=1 >"$found.log" 2>&1 || {
+    grep -a -v '^#' "$found.log"
+    exit 1
+  }
+  grep -a 'number_of_executed_units' "$found.log"
+  rm -rf "$found" "$found.log"
 done

@@ -14,6 +14,7 @@ from paraview.simple import *
 
 plugin, segmentation_file, folder = sys.argv[1:4]
 label, other_label = sys.argv[4:6] if len(sys.argv) > 4 else ("2", "1")
+os.makedirs(folder, exist_ok=True)
 LoadPlugin(plugin, remote=False, ns=globals())
 
 segmentation = OpenDataFile(segmentation_file)

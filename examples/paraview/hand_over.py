@@ -16,6 +16,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 plugin, segmentation_file, folder = sys.argv[1:4]
 factor = float(sys.argv[4]) if len(sys.argv) > 4 else 1.0
+os.makedirs(folder, exist_ok=True)
 LoadPlugin(plugin, remote=False, ns=globals())
 
 segmentation = OpenDataFile(segmentation_file)

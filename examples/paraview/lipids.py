@@ -12,6 +12,7 @@ import sys
 from paraview.simple import *
 
 plugin, segmentation_file, folder = sys.argv[1:]
+os.makedirs(folder, exist_ok=True)
 LoadPlugin(plugin, remote=False, ns=globals())
 
 segmentation = OpenDataFile(segmentation_file)

@@ -13,6 +13,7 @@ from paraview import servermanager
 from paraview.simple import *
 
 plugin, segmentation_file, folder = sys.argv[1:]
+os.makedirs(folder, exist_ok=True)
 LoadPlugin(plugin, remote=False, ns=globals())
 
 # 1. Open the file, and see whether its voxel size is what it should be.

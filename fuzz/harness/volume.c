@@ -91,7 +91,9 @@ static void run_ridge_field(
   float* distance = buffer_of(voxels, sizeof *distance);
   float* ridge = buffer_of(voxels, sizeof *ridge);
   midsurface_error* error = NULL;
-  check_outcome(midsurface_ridge_field(volume, options, distance, ridge, voxels, &error), error);
+  const midsurface_status status =
+    midsurface_ridge_field(volume, options, distance, ridge, voxels, &error);
+  check_outcome(status, error);
   free(distance);
   free(ridge);
 }
