@@ -19,6 +19,7 @@ fi
 export RUSTC_BOOTSTRAP=1
 export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/build/cargo}/sanitizers"
 export CARGO_PROFILE_RELEASE_LTO=off ASAN_OPTIONS=detect_leaks=1
+export LSAN_OPTIONS=suppressions=$PWD/fuzz/leaks.txt:print_suppressions=0
 
 echo "-- The core's unit tests"
 RUSTFLAGS="-Zsanitizer=address" cargo test --locked --quiet --release --target "$target" \

@@ -7,4 +7,4 @@ extern "C" {
     fn fuzz_polylines(data: *const u8, size: usize);
 }
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| { unsafe { fuzz_polylines(data.as_ptr(), data.len()) } });
+libfuzzer_sys::fuzz_target!(|data: &[u8]| unsafe { fuzz_polylines(data.as_ptr(), data.len()) });

@@ -7,4 +7,4 @@ extern "C" {
     fn fuzz_volume(data: *const u8, size: usize);
 }
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| { unsafe { fuzz_volume(data.as_ptr(), data.len()) } });
+libfuzzer_sys::fuzz_target!(|data: &[u8]| unsafe { fuzz_volume(data.as_ptr(), data.len()) });
