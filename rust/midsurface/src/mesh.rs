@@ -98,7 +98,6 @@ impl Mesh {
             terraces::PASSBAND,
             execution,
         )?;
-        keep_in_box(&mut surface.points, &polylines.points);
         let line_of = line_of_points(polylines);
         let line = |t: &[u32; 3]| &polylines.lines[line_of[surface.source[t[0] as usize] as usize]];
         let mut mesh = Self {
@@ -254,21 +253,6 @@ fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Vec<LineOfPoint> {
         known[range].fill(own);
     }
     source.iter().map(|&p| known[p as usize]).collect()
-}
-
-/// Moves points back into the box around all lines, and so into the volume: where a sheet runs along
-/// the volume's border, flattening may have carried them a little beyond.
-fn keep_in_box(points: &mut [Vec3], of: &[Vec3]) {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for p in of {
-        for a in 0..3 {
-            low[a] = low[a].min(p[a]);
-            high[a] = high[a].max(p[a]);
-        }
-    }
-    for p in points {
-        *p = std::array::from_fn(|a| p[a].max(low[a]).min(high[a]));
-    }
 }
 
 /// Twice the area of a closed line, as a vector across its plane (Newell).
