@@ -368,7 +368,6 @@ fn for_each_batch(
     mut work: impl FnMut(&[Part], &mut Execution) -> Result<()>,
 ) -> Result<usize> {
     execution.within(0.0, until);
-    execution.stage("Reading labels", 0.0, READING, 2)?;
     let all_parts = read_parts(volume, options, execution)?;
     let total: usize = all_parts.iter().map(Part::voxels).sum();
     let share = |voxels: usize| until * (READING + (1.0 - READING) * voxels as f64 / total as f64);
@@ -429,6 +428,7 @@ fn read_parts(volume: &Volume, options: &Options, execution: &mut Execution) -> 
     let wanted: Option<BTreeSet<i64>> =
         options.labels.as_ref().map(|l| l.iter().copied().collect());
     let is_wanted = |label: i64| wanted.as_ref().is_none_or(|wanted| wanted.contains(&label));
+    execution.stage("Reading labels", 0.0, READING, 2)?;
     let scan = runs::scan(volume, execution, is_wanted)?;
     report_labels(wanted.as_ref(), &scan.labels, execution)?;
     let (mut parts, specks) = parts(scan.runs, execution)?;

@@ -99,10 +99,25 @@ fn progress_goes_from_0_to_1_on_the_calling_thread() {
         stages.dedup();
         assert!(stages.len() >= 5, "{stages:?}");
     }
-    let empty = vec![0u8; 1000];
-    let mut recorder = Recorder::new(usize::MAX);
-    run(&empty, Grid::new([10; 3]), 1, &mut recorder).expect("an empty mesh");
-    assert_forward(&recorder);
+}
+
+#[test]
+fn progress_is_reported_where_there_is_no_surface() {
+    let empty = (vec![0u8; 1000], [10; 3]);
+    let single_slice = (vec![1u8; 400], [20, 1, 20]);
+    for (labels, dimensions) in [empty, single_slice] {
+        for method in [Method::RidgeSurface, Method::PolylineZipper] {
+            let volume = Volume::new(&labels, Grid::new(dimensions)).expect("a sound volume");
+            let options = Options {
+                method,
+                ..Options::default()
+            };
+            let mut recorder = Recorder::new(usize::MAX);
+            let mesh = extract(&volume, &options, &mut recorder).expect("an empty mesh");
+            assert!(mesh.triangles.is_empty());
+            assert_forward(&recorder);
+        }
+    }
 }
 
 #[test]
