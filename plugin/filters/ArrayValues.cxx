@@ -1,6 +1,9 @@
 #include "ArrayValues.h"
 
 #include "vtkDataArray.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 
 //------------------------------------------------------------------------------
 const void* ValuesOfType(vtkDataArray* array, int type, vtkSmartPointer<vtkDataArray>& kept)
@@ -28,4 +31,25 @@ const int64_t* WholeNumbers(
   const auto* values =
     static_cast<const int64_t*>(ValuesOfType(array, is64Bit ? type : VTK_LONG_LONG, kept));
   return values + first;
+}
+
+//------------------------------------------------------------------------------
+const double* Coordinates(vtkPolyData* data, vtkSmartPointer<vtkDataArray>& kept)
+{
+  if (data->GetNumberOfPoints() == 0)
+  {
+    return nullptr;
+  }
+  return static_cast<const double*>(ValuesOfType(data->GetPoints()->GetData(), VTK_DOUBLE, kept));
+}
+
+//------------------------------------------------------------------------------
+const float* PointValues(vtkPolyData* data, const char* name, vtkSmartPointer<vtkDataArray>& kept)
+{
+  vtkDataArray* array = data->GetPointData()->GetArray(name);
+  if (!array || array->GetNumberOfComponents() != 1)
+  {
+    return nullptr;
+  }
+  return static_cast<const float*>(ValuesOfType(array, VTK_FLOAT, kept));
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 class vtkDataArray;
+class vtkPolyData;
 
 /**
  * The values of an array as the VTK type `type`: the array's own memory, or a copy where its type
@@ -20,5 +21,11 @@ const void* ValuesOfType(vtkDataArray* array, int type, vtkSmartPointer<vtkDataA
  */
 const int64_t* WholeNumbers(
   vtkDataArray* array, vtkIdType first, vtkSmartPointer<vtkDataArray>& kept);
+
+/** Coordinates of the points, x y z; null where there is no point. */
+const double* Coordinates(vtkPolyData* data, vtkSmartPointer<vtkDataArray>& kept);
+
+/** The point array `name`; null where there is none, or one with several components. */
+const float* PointValues(vtkPolyData* data, const char* name, vtkSmartPointer<vtkDataArray>& kept);
 
 #endif

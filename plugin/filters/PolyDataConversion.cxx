@@ -72,6 +72,8 @@ void CopyPolylines(const midsurface_polyline_arrays& polylines, vtkPolyData* out
   CopyPoints<vtkDoubleArray>(polylines.points, polylines.point_count, output);
   output->GetPointData()->AddArray(
     CopyArray<vtkFloatArray>("Thickness", polylines.thickness, polylines.point_count));
+  output->GetPointData()->AddArray(
+    CopyArray<vtkFloatArray>("BorderDistance", polylines.border_distance, polylines.point_count));
 
   if (polylines.line_count > 0)
   {
@@ -100,14 +102,9 @@ PolylineInput::PolylineInput(vtkPolyData* input)
       "The input has no lines: this filter joins the polylines that Mid-Polylines makes.");
   }
   this->View.point_count = static_cast<size_t>(input->GetNumberOfPoints());
-  this->View.points = static_cast<const double*>(
-    ValuesOfType(input->GetPoints()->GetData(), VTK_DOUBLE, this->Points));
-  vtkDataArray* thickness = input->GetPointData()->GetArray("Thickness");
-  if (thickness && thickness->GetNumberOfComponents() == 1)
-  {
-    this->View.thickness =
-      static_cast<const float*>(ValuesOfType(thickness, VTK_FLOAT, this->Thickness));
-  }
+  this->View.points = Coordinates(input, this->Points);
+  this->View.thickness = PointValues(input, "Thickness", this->Thickness);
+  this->View.border_distance = PointValues(input, "BorderDistance", this->BorderDistance);
 
   this->Lines->ShallowCopy(input->GetLines());
   if (!this->Lines->IsStorage64Bit() && !this->Lines->ConvertTo64BitStorage())

@@ -13,7 +13,10 @@ class vtkPolyData;
 /** Copies a mesh, once: points `Normals` and `Thickness`, cells `Label` and `Component`. */
 void CopyMesh(const midsurface_mesh_arrays& mesh, vtkPolyData* output);
 
-/** Copies polylines, once: points `Thickness`, cells `Label`, `Component` and `Slice`. */
+/**
+ * Copies polylines, once: points `Thickness` and `BorderDistance`, cells `Label`, `Component` and
+ * `Slice`.
+ */
 void CopyPolylines(const midsurface_polyline_arrays& polylines, vtkPolyData* output);
 
 /**
@@ -36,6 +39,7 @@ private:
   vtkNew<vtkCellArray> Lines;
   vtkSmartPointer<vtkDataArray> Points;
   vtkSmartPointer<vtkDataArray> Thickness;
+  vtkSmartPointer<vtkDataArray> BorderDistance;
   vtkSmartPointer<vtkDataArray> Labels;
   vtkSmartPointer<vtkDataArray> Components;
   vtkSmartPointer<vtkDataArray> Slices;

@@ -5,8 +5,6 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
-#include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 #include <new>
@@ -17,17 +15,8 @@ TriangleInput::TriangleInput(vtkPolyData* input)
   : Input(input)
 {
   this->View.point_count = static_cast<size_t>(input->GetNumberOfPoints());
-  if (this->View.point_count > 0)
-  {
-    this->View.points = static_cast<const double*>(
-      ValuesOfType(input->GetPoints()->GetData(), VTK_DOUBLE, this->Points));
-  }
-  vtkDataArray* thickness = input->GetPointData()->GetArray("Thickness");
-  if (thickness && thickness->GetNumberOfComponents() == 1)
-  {
-    this->View.thickness =
-      static_cast<const float*>(ValuesOfType(thickness, VTK_FLOAT, this->Thickness));
-  }
+  this->View.points = Coordinates(input, this->Points);
+  this->View.thickness = PointValues(input, "Thickness", this->Thickness);
   this->ReadTriangles();
   this->View.labels = this->TriangleValues("Label", this->Labels);
   this->View.components = this->TriangleValues("Component", this->Components);

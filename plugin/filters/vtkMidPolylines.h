@@ -8,6 +8,8 @@
  * end. vtkPolylineZipper joins them to the mesh that vtkMidSurfaceFilter makes.
  *
  * - Point array `Thickness`: distance between both faces of the membrane, in world units.
+ * - Point array `BorderDistance`: distance from the border of the image within the slice, in world
+ *   units. vtkPolylineZipper moves no point over that border.
  * - Cell arrays `Label` and `Component`: as in vtkMidSurfaceFilter.
  * - Cell array `Slice`: the index of the slice along z, in the image's extent.
  */

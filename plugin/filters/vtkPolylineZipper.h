@@ -4,7 +4,8 @@
  *
  * Input: the vtkPolyData that vtkMidPolylines makes, of which the line cells with these arrays are
  * read: cell array `Slice` (required); `Label` and `Component` (default: 1 and 0), and the point
- * array `Thickness` (default: 0). Output: the mesh that vtkMidSurfaceFilter makes, see there.
+ * arrays `Thickness` (default: 0) and `BorderDistance` (default: there is no border). Output: the
+ * mesh that vtkMidSurfaceFilter makes, see there.
  */
 
 #ifndef vtkPolylineZipper_h

@@ -111,6 +111,7 @@ struct drawing
 {
   double points[POINTS][3];
   float thickness[POINTS];
+  float border_distance[POINTS];
   int64_t offsets[LINES + 1];
   int64_t connectivity[ENTRIES];
   int64_t labels[LINES];
@@ -122,6 +123,7 @@ static const struct drawing good_drawing = {
   .points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 0, 1 }, { 1, 0, 1 }, { 5, 5, 1 }, { 6, 5, 1 },
     { 6, 6, 1 }, { 5, 6, 1 } },
   .thickness = { 2, 2, 2, 2, 3, 3, 3, 3 },
+  .border_distance = { 0, 1, 0, 1, 5, 5, 6, 6 },
   .offsets = { 0, 2, 4, 9 },
   .connectivity = { 0, 1, 3, 2, 4, 5, 6, 7, 4 },
   .labels = { 1, 1, -4 },
@@ -135,6 +137,7 @@ static midsurface_polyline_arrays arrays_of_drawing(const struct drawing* drawin
     .points = drawing->points[0],
     .point_count = POINTS,
     .thickness = drawing->thickness,
+    .border_distance = drawing->border_distance,
     .offsets = drawing->offsets,
     .line_count = LINES,
     .connectivity = drawing->connectivity,
@@ -173,6 +176,7 @@ static void arrays_are_copied_as_they_are(void)
       const int64_t to = out.connectivity[entry];
       CHECK(memcmp(out.points + 3 * to, good_drawing.points[from], 3 * sizeof(double)) == 0);
       CHECK(out.thickness[to] == good_drawing.thickness[from]);
+      CHECK(out.border_distance[to] == good_drawing.border_distance[from]);
     }
     CHECK(!is_closed(&out, 0) && !is_closed(&out, 1) && is_closed(&out, 2));
   }
@@ -183,6 +187,7 @@ static void arrays_that_may_be_null_have_defaults(void)
 {
   midsurface_polyline_arrays arrays = arrays_of_drawing(&good_drawing);
   arrays.thickness = NULL;
+  arrays.border_distance = NULL;
   arrays.labels = NULL;
   arrays.components = NULL;
   midsurface_polylines* lines = drawn(&arrays);
@@ -195,6 +200,7 @@ static void arrays_that_may_be_null_have_defaults(void)
   for (size_t p = 0; p < out.point_count; p++)
   {
     CHECK(out.thickness[p] == 0.0F);
+    CHECK(isinf(out.border_distance[p]));
   }
   CHECK(out.line_count == LINES && out.point_count == POINTS);
   midsurface_polylines_free(lines);
@@ -331,6 +337,11 @@ static void broken_values_are_refused(void)
   refused_drawing(&drawing, "point 5");
   drawing.thickness[5] = -1.0F;
   refused_drawing(&drawing, "point 5");
+  drawing = good_drawing;
+  drawing.border_distance[6] = NAN;
+  refused_drawing(&drawing, "point 6");
+  drawing.border_distance[6] = -1.0F;
+  refused_drawing(&drawing, "point 6");
   drawing = good_drawing;
   drawing.components[1] = -1;
   refused_drawing(&drawing, "`arrays.components` holds -1");

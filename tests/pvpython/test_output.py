@@ -121,6 +121,8 @@ class Stages(FilterTest):
         self.assertEqual(set(found["cell Label"]), {1})
         self.assertEqual(set(found["cell Component"]), {0})
         self.assertEqual(len(found["point Thickness"]), len(found["points"]))
+        inside = np.minimum(found["points"], [30, 30, 11] - found["points"])[:, :2].min(axis=1)
+        self.assertLess(np.abs(found["point BorderDistance"] - inside).max(), 1e-5)
         for first, end in zip(found["lines offsets"], found["lines offsets"][1:]):
             line = found["lines"][first:end]
             self.assertEqual(line[0], line[-1], "a tube is cut in closed lines")

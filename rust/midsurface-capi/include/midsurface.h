@@ -318,6 +318,12 @@ typedef struct midsurface_polyline_arrays {
    */
   const float *thickness;
   /**
+   * Distance of the points from the border of the volume within their slice, in the unit of the
+   * coordinates, not negative: point_count values. Zipping moves no point over that border. May
+   * be NULL on input: there is no border, as with infinity.
+   */
+  const float *border_distance;
+  /**
    * Where each line begins in connectivity, and last its length: line_count + 1 values from 0
    * to connectivity_length, ascending. May be NULL on input where line_count is 0.
    */

@@ -18,6 +18,10 @@ pub struct midsurface_polyline_arrays {
     /// Local thickness at the points, in the unit of the coordinates, not negative: point_count
     /// values. May be NULL on input: all 0.
     pub thickness: *const f32,
+    /// Distance of the points from the border of the volume within their slice, in the unit of the
+    /// coordinates, not negative: point_count values. Zipping moves no point over that border. May
+    /// be NULL on input: there is no border, as with infinity.
+    pub border_distance: *const f32,
     /// Where each line begins in connectivity, and last its length: line_count + 1 values from 0
     /// to connectivity_length, ascending. May be NULL on input where line_count is 0.
     pub offsets: *const i64,
@@ -42,6 +46,7 @@ impl midsurface_polyline_arrays {
         points: std::ptr::null(),
         point_count: 0,
         thickness: std::ptr::null(),
+        border_distance: std::ptr::null(),
         offsets: std::ptr::null(),
         line_count: 0,
         connectivity: std::ptr::null(),
@@ -56,6 +61,7 @@ impl midsurface_polyline_arrays {
 struct Slices<'a> {
     points: &'a [[f64; 3]],
     thickness: Option<&'a [f32]>,
+    border_distance: Option<&'a [f32]>,
     offsets: &'a [i64],
     connectivity: &'a [i64],
     labels: Option<&'a [i64]>,
@@ -83,14 +89,16 @@ impl Slices<'_> {
             (0, true) => 0,
             _ => lines.saturating_add(1),
         };
+        let points = arrays.point_count;
         // SAFETY: as the header describes; three doubles are aligned as one.
         unsafe {
             Ok(Self {
-                points: slice(arrays.points.cast(), arrays.point_count, "arrays.points")?,
-                thickness: optional_slice(
-                    arrays.thickness,
-                    arrays.point_count,
-                    "arrays.thickness",
+                points: slice(arrays.points.cast(), points, "arrays.points")?,
+                thickness: optional_slice(arrays.thickness, points, "arrays.thickness")?,
+                border_distance: optional_slice(
+                    arrays.border_distance,
+                    points,
+                    "arrays.border_distance",
                 )?,
                 offsets: slice(arrays.offsets, offset_count, "arrays.offsets")?,
                 connectivity: slice(
@@ -133,9 +141,14 @@ impl Slices<'_> {
                 .map(|&i| i as usize)
         };
         let thickness = |index| self.thickness.map_or(0.0, |values: &[f32]| values[index]);
+        let border = |index| {
+            self.border_distance
+                .map_or(f32::INFINITY, |values: &[f32]| values[index])
+        };
         Ok(Polylines {
             points: collected(end, points().map(|index| self.points[index]))?,
             thickness: collected(end, points().map(thickness))?,
+            border_distance: collected(end, points().map(border))?,
             lines: polylines,
         })
     }
@@ -207,6 +220,14 @@ impl Slices<'_> {
             return Err(midsurface_error::invalid(format!(
                 "point {point} has a thickness of {}, which is no length",
                 thickness[point]
+            )));
+        }
+        let distances = self.border_distance.unwrap_or_default();
+        let unusable = |distance: &f32| distance.is_nan() || *distance < 0.0;
+        if let Some(point) = distances.iter().position(unusable) {
+            return Err(midsurface_error::invalid(format!(
+                "point {point} is said to be {} from the border, which is no length",
+                distances[point]
             )));
         }
         let components = self.components.unwrap_or_default();

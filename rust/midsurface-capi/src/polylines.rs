@@ -26,8 +26,9 @@ impl midsurface_polylines {
     fn new(polylines: Polylines) -> Result<Self, midsurface_error> {
         let lines = &polylines.lines;
         // C reads as many values as the view says: arrays that are shorter must not get there.
-        assert_eq!(polylines.thickness.len(), polylines.points.len());
         let point_count = polylines.points.len();
+        assert_eq!(polylines.thickness.len(), point_count);
+        assert_eq!(polylines.border_distance.len(), point_count);
         assert!(lines
             .iter()
             .all(|l| l.first <= point_count && l.count <= point_count - l.first));
@@ -60,6 +61,7 @@ impl midsurface_polylines {
             points: address(self.polylines.points.as_flattened()),
             point_count: self.polylines.points.len(),
             thickness: address(&self.polylines.thickness),
+            border_distance: address(&self.polylines.border_distance),
             offsets: address(&self.offsets),
             line_count: self.polylines.lines.len(),
             connectivity: address(&self.connectivity),

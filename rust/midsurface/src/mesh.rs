@@ -242,15 +242,19 @@ fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Vec<LineOfPoint> {
     for (i, line) in polylines.lines.iter().enumerate() {
         let range = line.first..line.first + line.count;
         let points = &polylines.points[range.clone()];
-        let own = LineOfPoint {
-            edge: polylines.mean_edge(i..i + 1),
-            across: if line.closed {
-                unit(area(points))
-            } else {
-                [0.0; 3]
-            },
+        let edge = polylines.mean_edge(i..i + 1);
+        let across = if line.closed {
+            unit(area(points))
+        } else {
+            [0.0; 3]
         };
-        known[range].fill(own);
+        for p in range {
+            known[p] = LineOfPoint {
+                edge,
+                across,
+                room: polylines.border_distance[p].into(),
+            };
+        }
     }
     source.iter().map(|&p| known[p as usize]).collect()
 }

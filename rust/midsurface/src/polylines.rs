@@ -41,6 +41,9 @@ pub struct Polylines {
     pub points: Vec<Vec3>,
     /// Local thickness at each point, world units.
     pub thickness: Vec<f32>,
+    /// Distance of each point from the border of the volume within its slice, world units, not
+    /// negative; infinite where there is no border. Flattening moves no point over the border.
+    pub border_distance: Vec<f32>,
     /// The lines, those of a component in the order of their slices.
     pub lines: Vec<Polyline>,
 }
@@ -314,6 +317,7 @@ fn half_width(slice: &Slice, p: Point, tangent: Point, component: u32) -> f64 {
 /// Moves a slice's lines into world coordinates and appends them.
 fn append(polylines: &mut Polylines, found: SliceLines, part: &Part, z: u32, grid: &Grid) {
     let h = grid.work_spacing();
+    let across = |p: &Point, a: usize| p[a].min((grid.dimensions[a] - 1) as f64 * h[a] - p[a]);
     for line in found.lines {
         polylines.lines.push(Polyline {
             first: polylines.points.len(),
@@ -327,5 +331,8 @@ fn append(polylines: &mut Polylines, found: SliceLines, part: &Part, z: u32, gri
         polylines.points.extend(line.points.iter().map(world));
         let scaled = line.thickness.iter().map(|t| (t * grid.unit()) as f32);
         polylines.thickness.extend(scaled);
+        let border = |p: &Point| across(p, 0).min(across(p, 1)).max(0.0) * grid.unit();
+        let distances = line.points.iter().map(|p| border(p) as f32);
+        polylines.border_distance.extend(distances);
     }
 }

@@ -109,6 +109,7 @@ pub(crate) fn ridge_surface(
 fn flatten(surface: &mut Surface, edge: f64, execution: &mut Execution) -> Result<()> {
     let point = LineOfPoint {
         edge,
+        room: f64::INFINITY,
         ..LineOfPoint::default()
     };
     let points = vec![point; surface.points.len()];

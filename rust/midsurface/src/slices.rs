@@ -23,6 +23,9 @@ impl Polylines {
         if self.thickness.len() != self.points.len() {
             return fail("there is not one thickness a point".into());
         }
+        if self.border_distance.len() != self.points.len() {
+            return fail("there is not one distance from the border a point".into());
+        }
         if let Some(i) = self
             .points
             .iter()
@@ -34,6 +37,12 @@ impl Polylines {
         }
         if let Some(i) = self.thickness.iter().position(|t| !t.is_finite()) {
             return fail(format!("the thickness of point {i} is no finite number"));
+        }
+        let no_distance = |d: &f32| d.is_nan() || *d < 0.0;
+        if let Some(i) = self.border_distance.iter().position(no_distance) {
+            return fail(format!(
+                "the distance of point {i} from the border is no distance"
+            ));
         }
         let inside = |line: &Polyline| {
             line.first
@@ -172,12 +181,15 @@ impl Polylines {
                 if clean.points.len() == first || !near(clean.points[clean.points.len() - 1], p) {
                     clean.points.push(p);
                     clean.thickness.push(self.thickness[line.first + k]);
+                    let distance = self.border_distance[line.first + k];
+                    clean.border_distance.push(distance);
                 }
             }
             let repeats_first = |points: &[Vec3]| near(points[first], points[points.len() - 1]);
             while line.closed && clean.points.len() > first + 1 && repeats_first(&clean.points) {
                 clean.points.pop();
                 clean.thickness.pop();
+                clean.border_distance.pop();
             }
             let count = clean.points.len() - first;
             let closed = line.closed && count >= 3;

@@ -12,7 +12,7 @@
 use crate::buckets::Buckets;
 use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, dot, sub, unit, Vec3};
+use crate::grid::{along, dot, length, sub, unit, Vec3};
 use crate::halfedge::{ends, Edges, NONE};
 
 /// End of the passband among K's eigenvalues, 0 to 2, for lines in slices: waves of about fourteen
@@ -31,7 +31,7 @@ const PIECE: usize = 1024;
 /// Passes over the points that [`flatten_terraces`] makes, for its progress.
 pub(crate) const PASSES: usize = 2 * DEGREE + SMOOTH_NORMALS + 1;
 
-/// What the filter knows of the line that a point is on.
+/// What the filter knows of a point and the line that it is on.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct LineOfPoint {
     /// Mean length of its edges.
@@ -39,6 +39,8 @@ pub(crate) struct LineOfPoint {
     /// Unit vector across its plane; zero where it is open. On a boundary a point of a closed line
     /// moves within that plane, any other stays: it may lie on the border of the volume.
     pub across: Vec3,
+    /// Farthest the point may move, so that it stays in the volume.
+    pub room: f64,
 }
 
 /// Neighbours of every point, with their weights in K in the same order. A point on a boundary has
@@ -72,12 +74,13 @@ pub(crate) fn flatten_terraces(
     )?;
     let rings = neighbours.rings(lines);
     for (i, point) in points.iter_mut().enumerate() {
-        let most = MOST * lines[i].edge * f64::from(rings[i]) / f64::from(RINGS);
         let way = if neighbours.boundary[i] {
             within_slice(normals[i], lines[i].across)
         } else {
             normals[i]
         };
+        let most = MOST * lines[i].edge * f64::from(rings[i]) / f64::from(RINGS);
+        let most = most.min(lines[i].room / length(way));
         *point = along(*point, moves[i].clamp(-most, most), way);
     }
     Ok(())

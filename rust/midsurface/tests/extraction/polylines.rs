@@ -19,6 +19,8 @@ fn straight(slices: i64, count: usize) -> Polylines {
 fn add_line(polylines: &mut Polylines, points: Vec<[f64; 3]>, slice: i64, closed: bool) {
     let (first, count) = (polylines.points.len(), points.len());
     polylines.thickness.extend(std::iter::repeat_n(4.0, count));
+    let no_border = std::iter::repeat_n(f32::INFINITY, count);
+    polylines.border_distance.extend(no_border);
     polylines.points.extend(points);
     polylines.lines.push(Polyline {
         first,
@@ -90,12 +92,21 @@ fn points_that_are_no_numbers() {
     let mut polylines = straight(4, 10);
     polylines.thickness[3] = f32::NAN;
     assert_refused(&polylines);
+    for bad in [f32::NAN, -1.0] {
+        let mut polylines = straight(4, 10);
+        polylines.border_distance[3] = bad;
+        assert_refused(&polylines);
+    }
 }
 
 #[test]
 fn arrays_that_do_not_fit() {
     let mut short = straight(4, 10);
     short.thickness.pop();
+    assert_refused(&short);
+
+    let mut short = straight(4, 10);
+    short.border_distance.pop();
     assert_refused(&short);
 
     let mut beyond = straight(4, 10);
@@ -271,4 +282,27 @@ fn rings_make_a_tube() {
     let topology = phantoms::connectivity(mesh.points.len(), &mesh.triangles).topology;
     let found = (topology.components, topology.euler, topology.boundary_loops);
     assert_eq!(found, (1, 0, 2));
+}
+
+/// The least y of a mesh of lines along x, half of them at y = 0, the others a step higher. A low-pass
+/// undershoots at a step.
+fn lowest_of_a_step(border_distance: impl Fn(f64) -> f32) -> f32 {
+    let mut polylines = straight(24, 24);
+    let distances = polylines.border_distance.iter_mut();
+    for (point, distance) in polylines.points.iter_mut().zip(distances) {
+        point[1] = if point[2] < 12.0 { 0.0 } else { 1.5 };
+        *distance = border_distance(point[1]);
+    }
+    let mesh = zip(&polylines).expect("a mesh");
+    assert_sound(&mesh);
+    mesh.points
+        .iter()
+        .fold(f32::MAX, |least, p| least.min(p[1]))
+}
+
+#[test]
+fn flattening_moves_no_point_over_the_border() {
+    let free = lowest_of_a_step(|_| f32::INFINITY);
+    assert!(free < -0.02, "without a border: {free}");
+    assert_eq!(lowest_of_a_step(|y| y as f32), 0.0);
 }

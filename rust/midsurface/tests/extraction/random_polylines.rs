@@ -24,6 +24,9 @@ fn assemble(slices: Vec<Vec<Line>>) -> Polylines {
                 .thickness
                 .extend(std::iter::repeat_n(3.0, points.len()));
             polylines
+                .border_distance
+                .extend(std::iter::repeat_n(f32::INFINITY, points.len()));
+            polylines
                 .points
                 .extend(points.iter().map(|p| [p[0], p[1], slice as f64]));
         }

@@ -132,9 +132,8 @@ fn assert_extracts(case: &Case) {
     assert!(mesh == zipped, "the stages give another mesh");
     for p in &mesh.points {
         let outside = beyond(&case.grid, p.map(f64::from));
-        // Flattening terraces moves a point by at most .3 of an edge of √2, and knows of no border.
         assert!(
-            outside <= 0.43,
+            outside <= 0.01,
             "{p:?} is {outside} voxels outside the volume"
         );
     }
