@@ -36,6 +36,7 @@ void fuzz_polylines(const uint8_t* data, size_t size)
   }
   arrays.points = points;
   arrays.thickness = flags & 1 ? thickness : NULL;
+  arrays.border_distance = flags & 32 ? thickness : NULL;
   int64_t* offsets = take_indices(&input, arrays.line_count + 1);
   if (!(flags & 16))
   {

@@ -115,7 +115,7 @@ void FailuresAreThrown()
   const auto view = [] { midsurface::Arrays(midsurface::Mesh()); };
   CHECK(StatusOf(view, "`mesh` is NULL") == MIDSURFACE_STATUS_INVALID_ARGUMENT);
   const auto make = [] {
-    midsurface::MakePolylines({ nullptr, 1, {}, {}, {}, {}, {}, {}, {}, {} });
+    midsurface::MakePolylines({ nullptr, 1, {}, {}, {}, {}, {}, {}, {}, {}, {} });
   };
   CHECK(StatusOf(make, "`arrays.points` is NULL") == MIDSURFACE_STATUS_INVALID_ARGUMENT);
 }

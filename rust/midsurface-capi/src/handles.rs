@@ -2,10 +2,29 @@
 
 use midsurface::{Options, Volume};
 
-use crate::arguments::{free, Output};
+use crate::arguments::{free, object, Output};
 use crate::error::{guarded, guarded_value, midsurface_error, midsurface_status};
 use crate::options::{self, midsurface_options, Callbacks};
 use crate::volume::{self, midsurface_volume};
+
+/// The body of a function that makes an object.
+///
+/// # Safety
+/// The pointers are null or as the header describes.
+pub(crate) unsafe fn make<T>(
+    out: *mut *mut T,
+    error: *mut *mut midsurface_error,
+    work: impl FnOnce() -> Result<T, midsurface_error>,
+) -> midsurface_status {
+    // SAFETY: the same contract.
+    unsafe {
+        guarded(error, || {
+            let out = Output::handle(out)?;
+            out.set_object(work()?);
+            Ok(())
+        })
+    }
+}
 
 /// The body of a function that makes an object of a volume.
 ///
@@ -20,11 +39,31 @@ pub(crate) unsafe fn make_of_volume<T>(
 ) -> midsurface_status {
     // SAFETY: the same contract.
     unsafe {
-        guarded(error, || {
-            let out = Output::handle(out)?;
+        make(out, error, || {
             let (volume, _) = volume::read(volume)?;
             let (options, mut callbacks) = options::read(options)?;
-            out.set_object(work(&volume, &options, &mut callbacks)?);
+            work(&volume, &options, &mut callbacks)
+        })
+    }
+}
+
+/// The body of a function that shows the arrays of the object called `name`; `empty` shows none.
+///
+/// # Safety
+/// The pointers are null or as the header describes.
+pub(crate) unsafe fn show<T, A>(
+    handle: *const T,
+    name: &str,
+    out: *mut A,
+    empty: A,
+    error: *mut *mut midsurface_error,
+    arrays: impl FnOnce(&T) -> A,
+) -> midsurface_status {
+    // SAFETY: the same contract.
+    unsafe {
+        guarded(error, || {
+            let out = Output::new(out, empty, "out")?;
+            out.set(arrays(object(handle, name)?));
             Ok(())
         })
     }

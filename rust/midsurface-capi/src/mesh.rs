@@ -2,9 +2,9 @@
 
 use midsurface::Mesh;
 
-use crate::arguments::{address, collected, object, Output};
+use crate::arguments::{address, collected, object};
 use crate::error::{guarded, midsurface_error, midsurface_status};
-use crate::handles::{make_of_volume, release};
+use crate::handles::{make_of_volume, release, show};
 use crate::options::midsurface_options;
 use crate::volume::midsurface_volume;
 
@@ -32,6 +32,20 @@ impl midsurface_mesh {
             components: collected(mesh.components.len(), components)?,
             mesh,
         })
+    }
+
+    fn arrays(&self) -> midsurface_mesh_arrays {
+        let mesh = &self.mesh;
+        midsurface_mesh_arrays {
+            points: address(mesh.points.as_flattened()),
+            point_count: mesh.points.len(),
+            normals: address(mesh.normals.as_flattened()),
+            thickness: address(&mesh.thickness),
+            triangles: address(self.triangles.as_flattened()),
+            triangle_count: mesh.triangles.len(),
+            labels: address(&mesh.labels),
+            components: address(&self.components),
+        }
     }
 }
 
@@ -106,22 +120,8 @@ pub unsafe extern "C" fn midsurface_mesh_view(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        guarded(error, || {
-            let out = Output::new(out, midsurface_mesh_arrays::EMPTY, "out")?;
-            let handle = object(mesh, "mesh")?;
-            let mesh = &handle.mesh;
-            out.set(midsurface_mesh_arrays {
-                points: address(mesh.points.as_flattened()),
-                point_count: mesh.points.len(),
-                normals: address(mesh.normals.as_flattened()),
-                thickness: address(&mesh.thickness),
-                triangles: address(handle.triangles.as_flattened()),
-                triangle_count: mesh.triangles.len(),
-                labels: address(&mesh.labels),
-                components: address(&handle.components),
-            });
-            Ok(())
-        })
+        let empty = midsurface_mesh_arrays::EMPTY;
+        show(mesh, "mesh", out, empty, error, |mesh| mesh.arrays())
     }
 }
 

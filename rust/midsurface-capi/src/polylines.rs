@@ -2,9 +2,9 @@
 
 use midsurface::{Polyline, Polylines};
 
-use crate::arguments::{address, collected, object, Output};
-use crate::error::{guarded, midsurface_error, midsurface_status};
-use crate::handles::{make_of_volume, release};
+use crate::arguments::{address, collected, object};
+use crate::error::{midsurface_error, midsurface_status};
+use crate::handles::{make, make_of_volume, release, show};
 use crate::mesh::midsurface_mesh;
 use crate::options::{self, midsurface_options};
 use crate::polyline_arrays::{self, midsurface_polyline_arrays};
@@ -108,11 +108,8 @@ pub unsafe extern "C" fn midsurface_polylines_new(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        guarded(error, || {
-            let out = Output::handle(out)?;
-            let polylines = polyline_arrays::read(arrays)?;
-            out.set_object(midsurface_polylines::new(polylines)?);
-            Ok(())
+        make(out, error, || {
+            midsurface_polylines::new(polyline_arrays::read(arrays)?)
         })
     }
 }
@@ -130,10 +127,9 @@ pub unsafe extern "C" fn midsurface_polylines_arrays(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        guarded(error, || {
-            let out = Output::new(out, midsurface_polyline_arrays::EMPTY, "out")?;
-            out.set(object(polylines, "polylines")?.arrays());
-            Ok(())
+        let empty = midsurface_polyline_arrays::EMPTY;
+        show(polylines, "polylines", out, empty, error, |polylines| {
+            polylines.arrays()
         })
     }
 }
@@ -160,13 +156,11 @@ pub unsafe extern "C" fn midsurface_zip(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        guarded(error, || {
-            let out = Output::handle(out)?;
+        make(out, error, || {
             let polylines = &object(polylines, "polylines")?.polylines;
             let (options, mut callbacks) = options::read(options)?;
             let mesh = midsurface::zip_polylines(polylines, &options, &mut callbacks)?;
-            out.set_object(midsurface_mesh::new(mesh)?);
-            Ok(())
+            midsurface_mesh::new(mesh)
         })
     }
 }

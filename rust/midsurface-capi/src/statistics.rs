@@ -2,9 +2,9 @@
 
 use midsurface::{Scope, Statistics, TriangleMesh};
 
-use crate::arguments::{address, collected, optional_slice, slice, value, Output};
-use crate::error::{guarded, midsurface_error, midsurface_status};
-use crate::handles::{look, release};
+use crate::arguments::{address, collected, optional_slice, slice, value};
+use crate::error::{midsurface_error, midsurface_status};
+use crate::handles::{look, make, release};
 
 /// A triangle mesh of any origin. Borrowed for a call, never copied.
 #[repr(C)]
@@ -131,8 +131,7 @@ pub unsafe extern "C" fn midsurface_measure(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        guarded(error, || {
-            let out = Output::handle(out)?;
+        make(out, error, || {
             let mesh = value(mesh, "mesh")?;
             let (points, triangles) = (mesh.point_count, mesh.triangle_count);
             let rows = midsurface::statistics(&TriangleMesh {
@@ -143,8 +142,7 @@ pub unsafe extern "C" fn midsurface_measure(
                 components: optional_slice(mesh.components, triangles, "mesh.components")?,
             })?;
             let rows = collected(rows.len(), rows.into_iter().map(Into::into))?;
-            out.set_object(midsurface_statistics(rows));
-            Ok(())
+            Ok(midsurface_statistics(rows))
         })
     }
 }
