@@ -1,9 +1,9 @@
 //! Sheets → sheet fraction: where the sheet ends.
 //!
-//! Midway through a sheet the slightly smoothed mask is the same everywhere inside and half of that on
-//! a rim or a hole's edge, if these are straight. So the *sheet fraction* is the smoothed mask over
-//! what it is midway through the sheet around here: 1 inside and ½ on the rim. Its σ is that of the
-//! grid, not of the sheet, so that rims stay sharp.
+//! Midway through a sheet the slightly smoothed mask is the same everywhere inside and half of that
+//! on a rim or a hole's edge, if these are straight. So the *sheet fraction* is the smoothed mask
+//! over what it is midway through the sheet around here: 1 inside and ½ on the rim. Its σ is that
+//! of the grid, not of the sheet, so that rims stay sharp.
 
 use crate::bricks::{Batch, BRICK};
 use crate::error::Result;

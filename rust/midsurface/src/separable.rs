@@ -196,9 +196,8 @@ fn filter<'k>(
             with_widest_vectors(
                 #[inline(always)]
                 || {
-                    let input =
-                        Neighbours::new(directory, place, axis, kernel.radius, &field, size);
-                    input.filter(axis, &weights, combine, out);
+                    let input = Neighbours::new(directory, place, axis, weights, &field, size);
+                    input.filter(axis, combine, out);
                 },
             );
         })?;
@@ -230,6 +229,8 @@ struct Neighbours<'a> {
     bricks: Vec<Option<&'a [f32]>>,
     /// Voxels from the start of the first of `bricks` to the first voxel the filter reaches.
     lead: usize,
+    /// The filter's weights at each voxel of the brick in the middle.
+    weights: [&'a [f32]; EDGE],
 }
 
 impl<'a> Neighbours<'a> {
@@ -238,10 +239,11 @@ impl<'a> Neighbours<'a> {
         directory: &Directory,
         place: [usize; 3],
         axis: usize,
-        radius: usize,
+        weights: [&'a [f32]; EDGE],
         field: &'a [f32],
         size: usize,
     ) -> Self {
+        let radius = weights[0].len() / 2;
         let reach = radius.div_ceil(EDGE);
         let brick = |i: usize| {
             let mut at = place;
@@ -253,26 +255,21 @@ impl<'a> Neighbours<'a> {
         Self {
             bricks: (0..=2 * reach).map(brick).collect(),
             lead: reach * EDGE - radius,
+            weights,
         }
     }
 
     /// Filters all values of the voxels along `axis`.
     #[inline(always)]
-    fn filter(
-        &self,
-        axis: usize,
-        weights: &[&[f32]; EDGE],
-        combine: impl Fn(f32, f32, f32) -> f32 + Copy,
-        out: &mut [f32],
-    ) {
+    fn filter(&self, axis: usize, combine: impl Fn(f32, f32, f32) -> f32 + Copy, out: &mut [f32]) {
         if self.bricks.iter().all(Option::is_none) {
             out.fill(0.0);
             return;
         }
         for (value, out) in out.chunks_exact_mut(BRICK).enumerate() {
             match axis {
-                0 => self.along_x(value, weights, combine, out),
-                _ => self.across(value, axis, weights, combine, out),
+                0 => self.along_x(value, combine, out),
+                _ => self.across(value, axis, combine, out),
             }
         }
     }
@@ -283,7 +280,6 @@ impl<'a> Neighbours<'a> {
         &self,
         value: usize,
         axis: usize,
-        weights: &[&[f32]; EDGE],
         combine: impl Fn(f32, f32, f32) -> f32 + Copy,
         out: &mut [f32],
     ) {
@@ -293,7 +289,7 @@ impl<'a> Neighbours<'a> {
         } else {
             (EDGE, LAYER)
         };
-        for (to, weights) in weights.iter().enumerate() {
+        for (to, weights) in self.weights.iter().enumerate() {
             for first in (0..EDGE).step_by(ROWS) {
                 let row = |k: usize| (first + k) * next;
                 let mut rows = [[0.0; EDGE]; ROWS];
@@ -317,7 +313,6 @@ impl<'a> Neighbours<'a> {
     fn along_x(
         &self,
         value: usize,
-        weights: &[&[f32]; EDGE],
         combine: impl Fn(f32, f32, f32) -> f32 + Copy,
         out: &mut [f32],
     ) {
@@ -331,12 +326,12 @@ impl<'a> Neighbours<'a> {
             }
         }
         // Away from the borders all eight kernels are one, and the rows run side by side.
-        let is_one = |w: &&[f32]| std::ptr::eq(w.as_ptr(), weights[0].as_ptr());
-        if weights.iter().all(is_one) {
+        let is_one = |w: &&[f32]| std::ptr::eq(w.as_ptr(), self.weights[0].as_ptr());
+        if self.weights.iter().all(is_one) {
             let groups = lines.chunks_exact(ROWS * width);
             for (lines, out) in groups.zip(out.chunks_exact_mut(ROWS * EDGE)) {
                 let mut rows = [[0.0; EDGE]; ROWS];
-                for (offset, &weight) in weights[0].iter().enumerate() {
+                for (offset, &weight) in self.weights[0].iter().enumerate() {
                     let from = self.lead + offset;
                     let input = std::array::from_fn(|k| &lines[k * width + from..][..EDGE]);
                     take(&mut rows, input, weight, combine);
@@ -348,7 +343,7 @@ impl<'a> Neighbours<'a> {
                 for (k, out) in out.iter_mut().enumerate() {
                     *out = line[self.lead + k..]
                         .iter()
-                        .zip(weights[k])
+                        .zip(self.weights[k])
                         .fold(0.0, |so_far, (v, w)| combine(so_far, *v, *w));
                 }
             }

@@ -7,8 +7,8 @@
 //! average away; n is T's principal eigenvector. The weight w = c D⁴, with c how clearly e stands
 //! out, lets the middle of the sheet speak for its rims. The offset to the crest is the Newton step
 //! for log f, −(g · n) f / (f nᵀ H n − (g · n)²), which is exact at any distance where the profile of
-//! f across the sheet is a Gaussian, as it is for thin sheets. Since only the component along n counts, a slope of f within the sheet, as
-//! it is near every rim, does not pull the crest aside.
+//! f across the sheet is a Gaussian, as it is for thin sheets. Since only the component along n
+//! counts, a slope of f within the sheet, as it is near every rim, does not pull the crest aside.
 
 use crate::block::{row, Block, Row, SIDE};
 use crate::bricks::{Batch, BRICK, EDGE};

@@ -1,10 +1,10 @@
 //! Which triangles of a mesh run into each other.
 //!
-//! Candidates are triangles whose boxes overlap, found in the cells of a grid. What decides are the signs of
-//! determinants, computed exactly (J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic
-//! and Fast Robust Geometric Predicates", 1997), so that there is no tolerance and no doubt: two
-//! triangles that touch in a single point count, unless that point is a vertex that both name.
-//! Neighbours that share a vertex or an edge count where they have more than that in common:
+//! Candidates are triangles whose boxes overlap, found in the cells of a grid. What decides are the
+//! signs of determinants, computed exactly (J. R. Shewchuk, "Adaptive Precision Floating-Point
+//! Arithmetic and Fast Robust Geometric Predicates", 1997), so that there is no tolerance and no
+//! doubt: two triangles that touch in a single point count, unless that point is a vertex that both
+//! name. Neighbours that share a vertex or an edge count where they have more than that in common:
 //! neighbours folded flat onto each other, say. Triangles without an area are looked at as the
 //! segments or points that they are.
 

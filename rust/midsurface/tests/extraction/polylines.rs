@@ -284,8 +284,8 @@ fn rings_make_a_tube() {
     assert_eq!(found, (1, 0, 2));
 }
 
-/// The least y of a mesh of lines along x, half of them at y = 0, the others a step higher. A low-pass
-/// undershoots at a step.
+/// The least y of a mesh of lines along x, half of them at y = 0, the others a step higher. A
+/// low-pass undershoots at a step.
 fn lowest_of_a_step(border_distance: impl Fn(f64) -> f32) -> f32 {
     let mut polylines = straight(24, 24);
     let distances = polylines.border_distance.iter_mut();

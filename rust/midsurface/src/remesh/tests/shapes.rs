@@ -24,9 +24,9 @@ impl Random {
     }
 }
 
-/// A grid of n × m quadrilaterals whose points are jittered by up to 0.24 of a cell (more would fold), each cut
-/// along a random diagonal. `place` takes jittered grid coordinates; a direction may be closed, and
-/// is not jittered across an open end.
+/// A grid of n × m quadrilaterals whose points are jittered by up to 0.24 of a cell (more would
+/// fold), each cut along a random diagonal. `place` takes jittered grid coordinates; a direction
+/// may be closed, and is not jittered across an open end.
 pub(super) fn grid(
     [n, m]: [usize; 2],
     closed: [bool; 2],
