@@ -18,7 +18,7 @@ use crate::interpolation::Sampler;
 use crate::resample::{arc_length, distance, resample};
 use crate::ridge::RidgeField;
 use crate::runs::Run;
-use crate::slice::{Pixel, Point, Slice, COVERED};
+use crate::slice::{Pixel, Point, Slice, COVERED, LINE};
 use crate::thickness::{depth, View};
 use crate::trace::{trace, Trace};
 
@@ -237,7 +237,12 @@ fn trace_region(
             length > least && (length * length > DISK * area || area < 12.0 * unit * unit)
         });
     match &line {
-        Some((widths, line)) => cover_line(slice, line, widths, component),
+        Some((widths, line)) => {
+            for &p in &line.points {
+                slice.set(slice.pixel(p), LINE);
+            }
+            cover_line(slice, line, widths, component);
+        }
         None => slice.cover(start, 1.5 * unit, component),
     }
     // Whatever the line covers, the region shrinks, so that regions come to an end.

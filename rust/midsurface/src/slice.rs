@@ -14,10 +14,12 @@ pub(crate) type Point = [f64; 2];
 
 /// A line runs through the pixel.
 pub(crate) const LINE: u8 = 1;
+/// The line that is being traced runs through the pixel.
+pub(crate) const TRACED: u8 = 2;
 /// The pixel belongs to a line, or no line was found for it.
-pub(crate) const COVERED: u8 = 2;
+pub(crate) const COVERED: u8 = 4;
 /// Met while regions are collected.
-const QUEUED: u8 = 4;
+const QUEUED: u8 = 8;
 
 /// No component of the slice.
 const NOWHERE: u32 = u32::MAX;
@@ -232,8 +234,9 @@ impl<'a> Slice<'a> {
         }
     }
 
-    fn clear(&mut self, [x, y]: Pixel, flag: u8) {
-        if let Some(entry) = self.entry(x as isize, y as isize) {
+    /// Takes `flag` off a pixel.
+    pub fn clear(&mut self, [x, y]: [isize; 2], flag: u8) {
+        if let Some(entry) = self.entry(x, y) {
             self.flags[entry] &= !flag;
         }
     }
@@ -309,7 +312,7 @@ impl<'a> Slice<'a> {
             regions.push(region);
         }
         for &pixel in regions.iter().flatten() {
-            self.clear(pixel, QUEUED);
+            self.clear(pixel.map(|v| v as isize), QUEUED);
         }
         regions
     }

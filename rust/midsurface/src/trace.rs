@@ -9,7 +9,7 @@
 //! sheet fraction says that the sheet ends.
 
 use crate::grid::Vec3;
-use crate::slice::{Point, Slice, LINE};
+use crate::slice::{Point, Slice, LINE, TRACED};
 
 /// Step of the trace, in units of the finest spacing of the slice: half the distance of the
 /// points that are kept, so that the trace follows tight folds.
@@ -18,7 +18,7 @@ const STEP: f64 = std::f64::consts::FRAC_1_SQRT_2;
 const REACH: f64 = 0.75;
 /// Where the normal's part within the slice is smaller, the sheet lies flat: no line.
 const FLAT: f64 = 0.06;
-/// A line does not look for other lines during its first steps, nor see its own last ones.
+/// A line does not see its own first and last steps.
 const LAG: usize = 6;
 
 /// A traced line and whether it is closed.
@@ -36,6 +36,7 @@ enum End {
 }
 
 /// Traces the line through `start`, in both directions unless it closes. At most `limit` steps.
+/// `None` where there is no sheet, or a line already.
 pub(crate) fn trace(
     slice: &mut Slice,
     start: Point,
@@ -44,24 +45,21 @@ pub(crate) fn trace(
 ) -> Option<Trace> {
     let start = slice.clamp(crest(slice, start)?);
     let direction = Across::at(slice, start)?.line();
-    if !is_sheet(slice, start) {
+    if slice.has(slice.pixel(start), LINE) || !is_sheet(slice, start) {
         return None;
     }
     let (mut points, end) = follow(slice, start, direction, component, limit);
-    if end == End::Closed {
-        return Some(Trace {
-            points,
-            closed: true,
-        });
+    let closed = end == End::Closed;
+    if !closed {
+        let back = [-direction[0], -direction[1]];
+        let (other, _) = follow(slice, start, back, component, limit);
+        points.reverse();
+        points.extend(&other[1..]);
     }
-    let back = [-direction[0], -direction[1]];
-    let (other, _) = follow(slice, start, back, component, limit);
-    points.reverse();
-    points.extend(&other[1..]);
-    Some(Trace {
-        points,
-        closed: false,
-    })
+    for &p in &points {
+        slice.clear(slice.pixel(p), TRACED);
+    }
+    Some(Trace { points, closed })
 }
 
 /// The step of a trace in work units.
@@ -179,7 +177,7 @@ fn follow(
         let pixel = slice.pixel(q);
         // Back at its own start a line goes on until it closes.
         let home = (q[0] - start[0]).hypot(q[1] - start[1]) < 3.0 * step;
-        let meets = i > LAG && !home && slice.has(pixel, LINE);
+        let meets = slice.has(pixel, LINE) || (i > LAG && !home && slice.has(pixel, TRACED));
         if meets || !slice.near(pixel, component) {
             break;
         }
@@ -197,12 +195,12 @@ fn follow(
         p = q;
         if points.len() > LAG {
             let behind = slice.pixel(points[points.len() - 1 - LAG]);
-            slice.set(behind, LINE);
+            slice.set(behind, TRACED);
         }
     }
     for &point in &points[points.len().saturating_sub(LAG)..] {
         let pixel = slice.pixel(point);
-        slice.set(pixel, LINE);
+        slice.set(pixel, TRACED);
     }
     (points, End::Open)
 }

@@ -99,7 +99,12 @@ fn leaning_sheets_2_thick_with_a_hole() {
 
 #[test]
 fn leaning_sheets_3_thick_with_a_hole() {
-    sheets_with_a_hole(&[10.0, 20.0, 30.0, 40.0], 3.0, STRICT);
+    sheets_with_a_hole(&[10.0, 20.0, 30.0, 40.0, 45.0], 3.0, STRICT);
+}
+
+#[test]
+fn leaning_sheets_8_thick_with_a_hole() {
+    sheets_with_a_hole(&[45.0], 8.0, STRICT);
 }
 
 #[test]
@@ -164,6 +169,24 @@ fn noise_does_not_move_the_surface() {
             .map(move |(n, phantom)| (n, phantom.with_noise(0.05, seed)))
     });
     assert_all_match(noisy, complete_within(0.12));
+}
+
+#[test]
+fn noise_does_not_tear_leaning_sheets() {
+    let noisy = [20.0, 30.0, 40.0].into_iter().flat_map(|tilt| {
+        [(0.0, 2), (17.0, 1), (33.0, 1), (75.0, 2)].map(|(azimuth, seed)| {
+            let (name, phantom) = sheet_with_a_hole(tilt, azimuth, 6.0);
+            (name, phantom.with_noise(0.05, seed))
+        })
+    });
+    // In its corners a noisy sheet may end a voxel early.
+    assert_all_match(
+        noisy,
+        Limits {
+            rms: 0.1,
+            covered: 0.999,
+        },
+    );
 }
 
 #[test]

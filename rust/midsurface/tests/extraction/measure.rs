@@ -72,14 +72,15 @@ pub const fn complete_within(rms: f64) -> Limits {
     Limits { rms, covered: 1.0 }
 }
 
-/// Asserts the topology of every phantom, exactly, and the limits. Tells about all that fail, by
-/// the names given.
+/// Asserts the topology of every phantom, exactly, that no mesh runs into itself, and the limits.
+/// Tells about all that fail, by the names given.
 pub fn assert_all_match(phantoms: impl IntoIterator<Item = (String, Phantom)>, limits: Limits) {
     let failures: Vec<String> = phantoms
         .into_iter()
         .filter_map(|(name, phantom)| {
             let report = report_of(&phantom);
             let matches = Some(report.connectivity.topology) == phantom.topology
+                && report.self_intersections == 0
                 && report.rms <= limits.rms
                 && report.covered_within_1 >= limits.covered;
             (!matches).then(|| format!("{name}: {report}"))
