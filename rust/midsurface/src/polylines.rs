@@ -26,6 +26,8 @@ use crate::trace::{trace, Trace};
 const SPACING: f64 = std::f64::consts::SQRT_2;
 /// A component is a disk where its line's squared length is below this share of its area.
 const DISK: f64 = 1.3;
+/// A component of a smaller area is no disk, units squared of the finest spacing.
+const SMALLEST_DISK: f64 = 12.0;
 /// How often a region that no line covers is tried from another start.
 const ATTEMPTS: usize = 3;
 /// Quantiles of the ridge field at which the attempts start, in regions of enough pixels.
@@ -152,6 +154,7 @@ fn trace_slice(part: PartField, runs: &[Run]) -> SliceLines {
     let mut found = SliceLines::default();
     for (number, pixels) in slice.components(runs).into_iter().enumerate() {
         let component = number as u32;
+        let is_speck = area(&slice, &pixels) < SMALLEST_DISK;
         let mut regions = vec![(pixels, 0)];
         let mut primary = true;
         while let Some((pixels, attempt)) = regions.pop() {
@@ -167,7 +170,7 @@ fn trace_slice(part: PartField, runs: &[Run]) -> SliceLines {
                 regions.extend(rest.map(|region| (region, attempt)));
             }
         }
-        found.disks += usize::from(primary);
+        found.disks += usize::from(primary && !is_speck);
     }
     found
 }
@@ -225,16 +228,8 @@ fn trace_region(
     let line = trace(slice, start, component, limit)
         .map(|line| (half_widths(slice, &line, component), line))
         .filter(|(widths, line)| {
-            let length = arc_length(line);
-            // A disk's line is short against what lies beside it. Branches do not count.
-            let beside = length * 2.0 * widths.iter().sum::<f64>() / widths.len() as f64;
-            let area = beside.min(pixels.len() as f64 * slice.h()[0] * slice.h()[1]);
-            let least = if primary {
-                0.3 * unit
-            } else {
-                2.0 * SPACING * unit
-            };
-            length > least && (length * length > DISK * area || area < 12.0 * unit * unit)
+            let least = if primary { 0.3 } else { 2.0 * SPACING };
+            arc_length(line) > least * unit && !is_disk(slice, line, widths, pixels)
         });
     match &line {
         Some((widths, line)) => {
@@ -248,6 +243,25 @@ fn trace_region(
     // Whatever the line covers, the region shrinks, so that regions come to an end.
     slice.set(seed.map(|v| v as isize), COVERED);
     line.and_then(|(_, line)| resample(slice, line, SPACING * unit, slice.z % 2 == 1))
+}
+
+/// Whether the region of a line is a disk: its line is short against what lies beside it.
+fn is_disk(slice: &Slice, line: &Trace, widths: &[f64], pixels: &[Pixel]) -> bool {
+    let unit = slice.h()[0].min(slice.h()[1]);
+    let length = arc_length(line) / unit;
+    // Branches do not count.
+    let width = 2.0 * widths.iter().sum::<f64>() / widths.len() as f64;
+    let area = area(slice, pixels).min(length * width / unit);
+    // What ends on the border goes on beyond it: with its mirror image it is twice as long.
+    let leaves = ends_on_border(slice, line).iter().any(Option::is_some);
+    let share = if leaves { 0.5 * DISK } else { DISK };
+    length * length <= share * area && area >= SMALLEST_DISK
+}
+
+/// Area of pixels, units squared of the finest spacing.
+fn area(slice: &Slice, pixels: &[Pixel]) -> f64 {
+    let [x, y, _] = slice.h();
+    pixels.len() as f64 * x * y / x.min(y).powi(2)
 }
 
 /// Where a region's line starts: at the peak of the ridge field, and where that failed, lower: in a

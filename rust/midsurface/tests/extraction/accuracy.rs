@@ -108,6 +108,16 @@ fn leaning_sheets_8_thick_with_a_hole() {
 }
 
 #[test]
+fn leaning_sheets_12_thick_with_a_hole() {
+    // The last voxel or two in the corners of the volume are missing.
+    let limits = Limits {
+        rms: 0.12,
+        covered: 0.993,
+    };
+    sheets_with_a_hole(&[30.0, 40.0, 45.0], 12.0, limits);
+}
+
+#[test]
 fn leaning_sheets_6_thick_with_a_hole() {
     sheets_with_a_hole(&[10.0, 30.0, 40.0, 45.0], 6.0, STRICT);
     let at = |azimuth| sheet_with_a_hole(20.0, azimuth, 6.0);

@@ -132,6 +132,10 @@ fn membranes_that_are_nowhere_flat_come_without_a_warning() {
             sheet(cube(), leaning(30.0, 33.0), 6.0, &[]),
         ),
         (
+            "leaning sheet with noise",
+            sheet(cube(), leaning(40.0, 33.0), 6.0, &[]).with_noise(0.05, 1),
+        ),
+        (
             "upright disk",
             disk(
                 cube(),
