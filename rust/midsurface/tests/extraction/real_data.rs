@@ -1,5 +1,5 @@
 //! Real segmentations, where they lie beside the checkout in ../shared/data: at least as good as
-//! the paper's own plugin on them.
+//! the paper's own plugin on them, and hardly a triangle runs into another.
 
 use std::path::Path;
 
@@ -36,6 +36,11 @@ fn check(name: &str, least: AtLeast) {
     assert!(
         (1000.0 * quality.valence_567).round() >= least.valence,
         "{told}"
+    );
+    let crossings = phantoms::self_intersections(&mesh.points, &mesh.triangles).len();
+    assert!(
+        crossings <= mesh.triangles.len() / 50_000,
+        "{told}: {crossings} pairs of triangles run into each other"
     );
 }
 
