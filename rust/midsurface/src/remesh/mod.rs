@@ -14,7 +14,7 @@
 //! | which edges are split, collapsed, flipped | `split.rs`, `collapse.rs`, `flip.rs` |
 //! | where points move | `relax.rs` |
 //! | every triangle becomes four, from twice the edge length to the one asked for | `subdivide.rs` |
-//! | what is still poor is mended | `polish.rs` |
+//! | what is still poor is mended | `polish.rs`, `repair.rs` |
 //!
 //! A triangle's work touches its block only, and blocks lie on a global grid: no step looks
 //! farther than a block's side.
@@ -27,6 +27,7 @@ mod patch;
 mod polish;
 mod reference;
 mod relax;
+mod repair;
 mod shape;
 mod sizing;
 mod split;
@@ -76,8 +77,8 @@ const COARSE_RELAXATIONS: usize = 8;
 const FINE_RELAXATIONS: usize = 3;
 /// Points handed to a worker at a time.
 const PIECE: usize = 4096;
-/// Passes that subdividing makes, and finding out where the points lie on the reference.
-const OTHER_PASSES: usize = 3;
+/// Passes that subdividing makes, repairing, and finding out where the points lie on the reference.
+const OTHER_PASSES: usize = 4;
 
 /// Remeshes a consistently wound 2-manifold, with or without boundary, to edges of about
 /// `edge_length`. Lengths are in units of the finest voxel spacing.
@@ -118,6 +119,8 @@ pub(crate) fn remesh(
             },
         )?;
     }
+    surface = repair::repair(surface, &reference, edge_length)?;
+    execution.pass_done()?;
     finish(&reference, surface, execution)
 }
 

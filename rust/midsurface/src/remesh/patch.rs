@@ -49,6 +49,7 @@ impl Vertex {
 pub(super) const MOST_AROUND: usize = 256;
 
 /// A piece of the surface.
+#[derive(Clone)]
 pub(super) struct Patch<'a> {
     pub reference: &'a Reference<'a>,
     /// Edges are wanted so many times longer than in the end,
@@ -282,10 +283,124 @@ impl<'a> Patch<'a> {
         self.out[v as usize] = NONE;
     }
 
+    /// The triangles up to so many rings around a point that is not frozen, as a patch of their own.
+    pub fn neighbourhood(&self, p: u32, rings: u8) -> Neighbourhood<'a> {
+        let mut points = vec![p];
+        let mut triangles: Vec<u32> = Vec::new();
+        let mut done = 0;
+        for _ in 0..rings {
+            let end = points.len();
+            for i in done..end {
+                if self.frozen[points[i] as usize] {
+                    continue;
+                }
+                for t in self.around(points[i]).map(|e| e / 3) {
+                    if !triangles.contains(&t) {
+                        triangles.push(t);
+                        for q in self.triangles[t as usize] {
+                            if !points.contains(&q) {
+                                points.push(q);
+                            }
+                        }
+                    }
+                }
+            }
+            done = end;
+        }
+        let number = |p: u32| {
+            points
+                .iter()
+                .position(|&q| q == p)
+                .map_or(NONE, |i| i as u32)
+        };
+        let corners = triangles
+            .iter()
+            .map(|&t| self.triangles[t as usize].map(number));
+        let mut patch = Patch::new(
+            self.reference,
+            (self.scale, self.longest),
+            points.iter().map(|&p| self.vertices[p as usize]).collect(),
+            vec![false; points.len()],
+            points.iter().map(|&p| self.valence[p as usize]).collect(),
+            corners.collect(),
+        );
+        for (i, &p) in points.iter().enumerate() {
+            patch.frozen[i] = self.frozen[p as usize] || patch.fan[i] < self.fan[p as usize];
+        }
+        Neighbourhood {
+            patch,
+            points,
+            triangles,
+        }
+    }
+
+    /// Puts a neighbourhood back, changed.
+    pub fn put_back(&mut self, place: Neighbourhood, changed: Patch) {
+        let mut points = place.points;
+        for (i, vertex) in changed.vertices.iter().enumerate() {
+            if i == points.len() {
+                points.push(self.vertices.len() as u32);
+                self.vertices.push(*vertex);
+                self.frozen.push(false);
+                self.valence.push(0);
+                self.fan.push(0);
+                self.out.push(NONE);
+            }
+            let p = points[i] as usize;
+            self.vertices[p] = *vertex;
+            self.valence[p] = changed.valence[i];
+            self.fan[p] += changed.fan[i] - place.patch.fan.get(i).copied().unwrap_or(0);
+            if self.out[p] != NONE && place.triangles.contains(&(self.out[p] / 3)) {
+                self.out[p] = NONE;
+            }
+        }
+        // The twins beyond, by the ends of the half-edges they belong to.
+        let mut beyond: Vec<([u32; 2], u32)> = Vec::new();
+        for e in place.triangles.iter().flat_map(|&t| 3 * t..3 * t + 3) {
+            let f = self.twin(e);
+            if f != NONE && !place.triangles.contains(&(f / 3)) {
+                beyond.push(([self.origin(e), self.end(e)], f));
+            }
+        }
+        for &t in &place.triangles {
+            self.triangles[t as usize] = [NONE; 3];
+            self.free.push(t);
+        }
+        let alive = |t: &u32| changed.is_alive(*t);
+        let old: Vec<u32> = (0..changed.triangles.len() as u32).filter(alive).collect();
+        let mut new = vec![NONE; changed.triangles.len()];
+        for &t in &old {
+            new[t as usize] = self.add_triangle();
+            let corners = changed.triangles[t as usize];
+            self.triangles[new[t as usize] as usize] = corners.map(|p| points[p as usize]);
+        }
+        let renumbered = |e: u32| 3 * new[e as usize / 3] + e % 3;
+        for e in old.iter().flat_map(|&t| 3 * t..3 * t + 3) {
+            let f = changed.twin(e);
+            let e = renumbered(e);
+            let twin = if f == NONE {
+                let ends = [self.origin(e), self.end(e)];
+                let found = beyond.iter().find(|b| b.0 == ends);
+                found.map_or(NONE, |b| b.1)
+            } else {
+                renumbered(f)
+            };
+            self.link(e, twin);
+        }
+    }
+
     /// Whether a point is used by no triangle any more.
     pub fn is_removed(&self, p: u32) -> bool {
         self.out[p as usize] == NONE
     }
+}
+
+/// A small part of a patch, taken out.
+pub(super) struct Neighbourhood<'a> {
+    pub patch: Patch<'a>,
+    /// The numbers of its points and triangles in the patch that it is of.
+    points: Vec<u32>,
+    triangles: Vec<u32>,
 }
 
 /// Half-edges around a point.

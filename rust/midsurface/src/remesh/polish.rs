@@ -30,6 +30,12 @@ pub(super) fn polish(patch: &mut Patch) {
             draw_away(patch, p, &mut ring);
         }
     }
+    mend_poor(patch);
+}
+
+/// Flips edges and moves points of poor triangles.
+pub(super) fn mend_poor(patch: &mut Patch) {
+    let mut ring = Vec::new();
     for _ in 0..SWEEPS {
         flip_poor_edges(patch);
         for p in 0..patch.vertices.len() as u32 {

@@ -49,7 +49,7 @@ fn squared_excess(patch: &Patch, e: u32) -> f64 {
 }
 
 /// A vertex in the middle of an edge, unless the reference has none near.
-fn near_middle(patch: &Patch, e: u32) -> Option<Vertex> {
+pub(super) fn near_middle(patch: &Patch, e: u32) -> Option<Vertex> {
     let ends = [patch.origin(e), patch.end(e)].map(|p| &patch.vertices[p as usize]);
     let vertex = middle(patch.reference, ends, patch.twin(e) == NONE);
     is_near(&vertex, ends).then_some(vertex)

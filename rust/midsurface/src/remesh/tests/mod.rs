@@ -117,6 +117,20 @@ fn closed_and_open_surfaces_are_good() {
     }
 }
 
+/// Polishing alone leaves a fault in each of these.
+#[test]
+fn no_fault_is_left() {
+    let shapes = [
+        ring(15.0, 60.0, 20),
+        sphere(44.0, 24),
+        torus(40.0, 12.0, 36),
+        sphere(44.0, 43),
+    ];
+    for shape in &shapes {
+        check_quality(shape, &run(shape, STEP, 2));
+    }
+}
+
 #[test]
 fn topology_outlasts_any_edge_length() {
     let close = rectangle(40, 30, 0.0, 7)
