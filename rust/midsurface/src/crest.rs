@@ -20,7 +20,7 @@ use crate::sheet::{dot, source, unshrink, Sheet, ENTRIES, TRUSTED};
 /// A core voxel's profile falls within the sheet by at most this much, in σ² times curvature.
 const TANGENTIAL: f32 = 0.6;
 /// and is curved within the sheet by at most this share of its curvature across.
-const BENT: f32 = 0.35;
+const BENT: f32 = 0.32;
 /// Bounds of the standard deviation ρ of the tensors' smoothing, which is σ, in work units.
 const RHO_BOUNDS: [f32; 2] = [1.2, 3.4];
 /// Kernels of ρ are made at steps of this ratio.

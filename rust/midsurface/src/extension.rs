@@ -1,9 +1,10 @@
 //! Core sheets → sheets to beyond the rims.
 //!
 //! Near a rim, a junction or a face the profile says little about the sheet, but the core voxels
-//! next to it do: a sheet runs straight on. Ring by ring, an unknown voxel takes the mean of what
-//! its known neighbours say, each by its own normal and offset.
+//! next to it do: a sheet runs on as it bends there (`bending.rs`). Ring by ring, an unknown voxel
+//! takes the mean of what its known neighbours say, each by its own normal and offset.
 
+use crate::bending::{Bend, Bending};
 use crate::block::{row, Block, SIDE};
 use crate::bricks::{Batch, BRICK, EDGE};
 use crate::error::Result;
@@ -26,6 +27,7 @@ pub(crate) fn extend(
     sheets: &mut [Sheet],
     execution: &mut Execution,
 ) -> Result<()> {
+    let bending = Bending::new(batch, sheets, h, execution)?;
     let mut open: Vec<usize> = (0..batch.part_of_brick.len()).collect();
     for _ in 0..rings {
         let mut found: Vec<(usize, Vec<(u16, Sheet)>)> = Vec::new();
@@ -38,7 +40,11 @@ pub(crate) fn extend(
                     return (brick, Vec::new());
                 }
                 let known = Block::gather(batch, brick, before);
-                (brick, ring(&known, &near.largest_near(), farthest, h))
+                let bend = bending.around(batch, brick);
+                (
+                    brick,
+                    ring(&known, &near.largest_near(), farthest, &bend, h),
+                )
             },
             |own| {
                 if !own.1.is_empty() {
@@ -65,7 +71,13 @@ pub(crate) fn extend(
 }
 
 /// The voxels of a brick that learn their sheet in this ring.
-fn ring(known: &Block<Sheet>, near: &[f32; BRICK], farthest: f32, h: Vec3) -> Vec<(u16, Sheet)> {
+fn ring(
+    known: &Block<Sheet>,
+    near: &[f32; BRICK],
+    farthest: f32,
+    bend: &Bend,
+    h: Vec3,
+) -> Vec<(u16, Sheet)> {
     let mut learnt = Vec::new();
     if known.values.iter().all(|sheet| *sheet == Sheet::default()) {
         return learnt;
@@ -73,7 +85,7 @@ fn ring(known: &Block<Sheet>, near: &[f32; BRICK], farthest: f32, h: Vec3) -> Ve
     for (i, near) in near.iter().enumerate() {
         let at = row(i / EDGE % EDGE, i / EDGE / EDGE) + i % EDGE;
         if *near > 0.0 && known.values[at] == Sheet::default() {
-            if let Some(sheet) = continued(known, at, h) {
+            if let Some(sheet) = continued(known, at, bend, h) {
                 if sheet[3].abs() <= farthest {
                     learnt.push((i as u16, sheet));
                 }
@@ -85,7 +97,7 @@ fn ring(known: &Block<Sheet>, near: &[f32; BRICK], farthest: f32, h: Vec3) -> Ve
 
 /// What the known neighbours of a voxel say of its sheet: the mean of those that agree with the
 /// middle one.
-fn continued(known: &Block<Sheet>, at: usize, h: Vec3) -> Option<Sheet> {
+fn continued(known: &Block<Sheet>, at: usize, bend: &Bend, h: Vec3) -> Option<Sheet> {
     let mut said = [Sheet::default(); 26];
     let mut count = 0;
     for step in (0..27).filter(|&step| step != 13) {
@@ -99,7 +111,9 @@ fn continued(known: &Block<Sheet>, at: usize, h: Vec3) -> Option<Sheet> {
         // The voxel lies this far from the neighbour.
         let apart: [f32; 3] = std::array::from_fn(|a| (1.0 - step[a] as f32) * h[a] as f32);
         let n = [sheet[0], sheet[1], sheet[2]];
-        said[count] = [n[0], n[1], n[2], sheet[3] - dot(n, apart)];
+        let change = bend.change(n, apart);
+        let offset = sheet[3] - dot(n, apart) - 0.5 * dot(change, apart);
+        said[count] = [n[0] + change[0], n[1] + change[1], n[2] + change[2], offset];
         if dot(n, [said[0][0], said[0][1], said[0][2]]) < 0.0 {
             said[count] = said[count].map(|v| -v);
         }

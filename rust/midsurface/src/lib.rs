@@ -38,6 +38,7 @@
 //! only, never on the order of work: any number of threads gives the same mesh.
 #![forbid(unsafe_code)]
 
+mod bending;
 mod block;
 mod border;
 mod bricks;

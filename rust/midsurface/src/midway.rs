@@ -9,7 +9,7 @@
 use crate::bricks::Batch;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, Vec3};
+use crate::grid::{along, dot, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::Surface;
@@ -18,6 +18,9 @@ use crate::thickness::View;
 
 /// Sheet fraction below which the faces seen may be a rim's.
 const INSIDE: f64 = 0.8;
+/// Where the border of the volume holds more than this share of a step along the normal back, what
+/// is left would be a long way along the border: the point stays.
+const STEEP: f64 = 0.5;
 /// No point is off by more, work units.
 const MOST: f64 = 2.0;
 /// Rounds of averaging over neighbouring points; their number is the variance in about two squared
@@ -118,8 +121,8 @@ fn move_once(
 fn within_volume(p: Vec3, n: Vec3, off: f64, last: Vec3) -> Vec3 {
     let on_border = |a: usize| p[a] <= 0.0 || p[a] >= last[a];
     let way: Vec3 = std::array::from_fn(|a| if on_border(a) { 0.0 } else { n[a] });
-    let share = crate::grid::dot(way, way);
-    if share < 0.1 {
+    let share = dot(way, way);
+    if share < STEEP {
         return p;
     }
     let moved = along(p, off / share, way);

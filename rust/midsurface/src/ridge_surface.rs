@@ -1,11 +1,11 @@
 //! The method "ridge surface": the mid-surface in any orientation.
 //!
 //! Batch by batch: how thick the label is (`scale.rs`), its profile under a Gaussian as wide
-//! (`profile.rs`), the sheets at its crest (`crest.rs`) and on to beyond the rims (`extension.rs`),
-//! a surface through them (`contour.rs`), wound the same way (`manifold.rs`), cut at the rims
-//! (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers (`weld.rs`), moved midway between
-//! both faces (`midway.rs`) and remeshed (`remesh`). How much of the progress a stage is given is
-//! how long it took on the membranes of real cells.
+//! (`profile.rs`), the sheets at its crest (`crest.rs`), how they bend (`bending.rs`) and on to
+//! beyond the rims (`extension.rs`), a surface through them (`contour.rs`), wound the same way
+//! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
+//! (`weld.rs`), moved midway between both faces (`midway.rs`) and remeshed (`remesh`). How much of
+//! the progress a stage is given is how long it took on the membranes of real cells.
 
 use crate::bricks::Batch;
 use crate::components::Part;
@@ -164,7 +164,7 @@ fn find_sheets(
     let farthest = (FARTHEST * h.iter().copied().fold(1.0, f64::max)) as f32;
     let mut sheets = core_sheets(batch, &profile, distance, farthest, h, execution)?;
     drop(profile);
-    execution.stage("Extending sheets", 0.27, 0.38, RINGS)?;
+    execution.stage("Extending sheets", 0.27, 0.38, 1 + RINGS)?;
     extend(batch, distance, RINGS, farthest, h, &mut sheets, execution)?;
     execution.stage("Settling sheets", 0.38, 0.47, SETTLINGS)?;
     for _ in 0..SETTLINGS {
