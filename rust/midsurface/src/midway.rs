@@ -21,17 +21,21 @@ const INSIDE: f64 = 0.8;
 /// Where the border of the volume holds more than this share of a step along the normal back, what
 /// is left would be a long way along the border: the point stays.
 const STEEP: f64 = 0.5;
-/// No point is off by more, work units.
-const MOST: f64 = 2.0;
-/// Rounds of averaging over neighbouring points; their number is the variance in about two squared
-/// edges of the contour.
-const ROUNDS: usize = 10;
-/// Times that points are moved, with normals of their own each time.
-const MOVES: usize = 2;
+/// A point sees both faces if this much before a ray meets one, work units, the outside is at least
+/// this share of that away.
+const BEFORE: f64 = 4.0;
+const ACROSS: f64 = 0.5;
+/// Times that points are moved, with normals of their own each time: the rounds of averaging over
+/// neighbouring points, whose number is the variance in about two squared edges of the contour, and
+/// by how much a point may be off, work units. What is seen gets surer with each.
+const MOVES: [(usize, f64); 4] = [(12, 2.0), (8, 1.0), (6, 0.8), (5, 0.7)];
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 /// Passes over the points that [`move_midway`] makes, for its progress.
-pub(crate) const PASSES: usize = MOVES * (1 + NORMAL_PASSES + ROUNDS);
+pub(crate) const PASSES: usize = {
+    let rounds = MOVES[0].0 + MOVES[1].0 + MOVES[2].0 + MOVES[3].0;
+    MOVES.len() * (1 + NORMAL_PASSES) + rounds
+};
 
 /// How far off each point is, and how much of that was seen there.
 type Seen = [f32; 2];
@@ -54,8 +58,8 @@ pub(crate) fn move_midway(
     execution: &mut Execution,
 ) -> Result<()> {
     let fans = Fans::new(&surface.triangles, surface.points.len());
-    for _ in 0..MOVES {
-        move_once(label, surface, &fans, execution)?;
+    for (rounds, most) in MOVES {
+        move_once(label, surface, &fans, (rounds, most), execution)?;
     }
     Ok(())
 }
@@ -64,6 +68,7 @@ fn move_once(
     label: &Label,
     surface: &mut Surface,
     fans: &Fans,
+    (rounds, most): (usize, f64),
     execution: &mut Execution,
 ) -> Result<()> {
     let Label {
@@ -89,13 +94,14 @@ fn move_once(
                 h,
             };
             let view = View::new(&sampler, points[p], normals[p]);
-            if let Some(off) = view.to_middle.filter(|off| off.abs() <= MOST) {
+            let middle = view.to_middle.filter(|off| off.abs() <= most);
+            if let Some(off) = middle.filter(|&off| sees_faces(&sampler, points[p], &view, off)) {
                 *out = [off as f32, 1.0];
             }
         }
     })?;
     let mut averaged: Vec<Seen> = zeros(seen.len())?;
-    for _ in 0..ROUNDS {
+    for _ in 0..rounds {
         execution.fill(&mut averaged, PIECE, |piece, out| {
             for (i, out) in out.iter_mut().enumerate() {
                 *out = mean(&seen, fans, &surface.triangles, PIECE * piece + i);
@@ -115,6 +121,17 @@ fn move_once(
         }
     }
     Ok(())
+}
+
+/// Whether both rays end at faces of the sheet, not at the wall of its rim: just before a ray meets
+/// a face, the outside is about as near as that face.
+fn sees_faces(distance: &Sampler, p: Vec3, view: &View, off: f64) -> bool {
+    [1.0, -1.0].into_iter().all(|side| {
+        let reach = 0.5 * view.thickness + side * off;
+        let before = reach.min(BEFORE);
+        let there = along(p, side * (reach - before), view.normal);
+        distance.linear(there) >= ACROSS * before
+    })
 }
 
 /// Moves a point along its normal; one on the border of the volume stays on the border.

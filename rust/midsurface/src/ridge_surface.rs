@@ -43,7 +43,7 @@ const SETTLINGS: usize = 4;
 const RINGS: usize = 12;
 /// End of the passband of the low-pass that flattens terraces: shorter waves than for lines, since
 /// midway points have fewer terraces, and thick membranes have bends of their own.
-const PASSBAND: f64 = 0.08;
+const PASSBAND: f64 = 0.12;
 /// Rounds of dropping triangles without area.
 const MENDINGS: usize = 4;
 /// Points handed to a worker at a time.
