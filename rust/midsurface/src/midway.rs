@@ -17,7 +17,7 @@ use crate::mesh::{normals, NORMAL_PASSES};
 use crate::thickness::View;
 
 /// Sheet fraction below which the faces seen may be a rim's.
-const INSIDE: f64 = 0.8;
+const INSIDE: f64 = 0.7;
 /// Where the border of the volume holds more than this share of a step along the normal back, what
 /// is left would be a long way along the border: the point stays.
 const STEEP: f64 = 0.5;
@@ -28,7 +28,7 @@ const ACROSS: f64 = 0.5;
 /// Times that points are moved, with normals of their own each time: the rounds of averaging over
 /// neighbouring points, whose number is the variance in about two squared edges of the contour, and
 /// by how much a point may be off, work units. What is seen gets surer with each.
-const MOVES: [(usize, f64); 4] = [(12, 2.0), (8, 1.0), (6, 0.8), (5, 0.7)];
+const MOVES: [(usize, f64); 4] = [(12, 2.0), (9, 1.0), (7, 0.8), (6, 0.7)];
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 /// Passes over the points that [`move_midway`] makes, for its progress.

@@ -80,13 +80,13 @@ must!(sphere_r_12_noisy, "sphere R=12", NOISY);
 must!(sphere_12_to_14_thick_clean, "sphere 12 to 14 thick", CLEAN);
 must!(sphere_12_to_14_thick_noisy, "sphere 12 to 14 thick", NOISY);
 must!(torus_clean, "torus", CLEAN);
-falls_short!(torus_noisy, "torus", NOISY);
+must!(torus_noisy, "torus", NOISY);
 must!(torus_2_thick_clean, "torus 2 thick", CLEAN);
 must!(torus_2_thick_noisy, "torus 2 thick", NOISY);
 must!(tube_clean, "tube", CLEAN);
 must!(tube_noisy, "tube", NOISY);
-falls_short!(tube_2_thick_clean, "tube 2 thick", CLEAN);
-falls_short!(tube_2_thick_noisy, "tube 2 thick", NOISY);
+must!(tube_2_thick_clean, "tube 2 thick", CLEAN);
+must!(tube_2_thick_noisy, "tube 2 thick", NOISY);
 must!(disk_clean, "disk", CLEAN);
 must!(disk_noisy, "disk", NOISY);
 must!(disk_with_a_hole_clean, "disk with a hole", CLEAN);
@@ -114,7 +114,7 @@ must!(plane_85_degrees_noisy, "plane 85 degrees", NOISY);
 falls_short!(gyroid_clean, "gyroid", CLEAN);
 falls_short!(gyroid_noisy, "gyroid", NOISY);
 must!(sphere_1_thick_clean, "sphere 1 thick", CLEAN);
-falls_short!(sphere_1_thick_noisy, "sphere 1 thick", NOISY);
+must!(sphere_1_thick_noisy, "sphere 1 thick", NOISY);
 must!(
     sphere_1_thick_corners_clean,
     "sphere 1 thick, corners",
@@ -150,17 +150,17 @@ must!(
     "nested spheres 4 apart",
     CLEAN
 );
-falls_short!(
+must!(
     nested_spheres_4_apart_noisy,
     "nested spheres 4 apart",
     NOISY
 );
-falls_short!(
+must!(
     nested_spheres_3_apart_clean,
     "nested spheres 3 apart",
     CLEAN
 );
-falls_short!(
+must!(
     nested_spheres_3_apart_noisy,
     "nested spheres 3 apart",
     NOISY
@@ -185,33 +185,33 @@ must!(
     "nested spheres 1 apart",
     NOISY
 );
-falls_short!(two_sheets_3_apart_clean, "two sheets 3 apart", CLEAN);
+must!(two_sheets_3_apart_clean, "two sheets 3 apart", CLEAN);
 falls_short!(two_sheets_3_apart_noisy, "two sheets 3 apart", NOISY);
 must!(two_sheets_2_apart_clean, "two sheets 2 apart", CLEAN);
 falls_short!(two_sheets_2_apart_noisy, "two sheets 2 apart", NOISY);
-falls_short!(two_sheets_1_apart_clean, "two sheets 1 apart", CLEAN);
-falls_short!(two_sheets_1_apart_noisy, "two sheets 1 apart", NOISY);
-falls_short!(
+must!(two_sheets_1_apart_clean, "two sheets 1 apart", CLEAN);
+must!(two_sheets_1_apart_noisy, "two sheets 1 apart", NOISY);
+must!(
     thick_slab_beside_thin_sheet_clean,
     "thick slab beside thin sheet",
     CLEAN
 );
-falls_short!(
+must!(
     thick_slab_beside_thin_sheet_noisy,
     "thick slab beside thin sheet",
     NOISY
 );
-falls_short!(
+must!(
     labels_touching_sheets_clean,
     "labels touching, sheets",
     CLEAN
 );
-falls_short!(
+must!(
     labels_touching_sheets_noisy,
     "labels touching, sheets",
     NOISY
 );
-falls_short!(
+must!(
     labels_touching_shells_clean,
     "labels touching, shells",
     CLEAN
@@ -221,11 +221,11 @@ must!(
     "labels touching, shells",
     NOISY
 );
-falls_short!(invagination_clean, "invagination", CLEAN);
-falls_short!(invagination_noisy, "invagination", NOISY);
-falls_short!(fold_clean, "fold", CLEAN);
-falls_short!(fold_noisy, "fold", NOISY);
-falls_short!(cristae_clean, "cristae", CLEAN);
+must!(invagination_clean, "invagination", CLEAN);
+must!(invagination_noisy, "invagination", NOISY);
+must!(fold_clean, "fold", CLEAN);
+must!(fold_noisy, "fold", NOISY);
+must!(cristae_clean, "cristae", CLEAN);
 must!(cristae_noisy, "cristae", NOISY);
 must!(bent_tube_clean, "bent tube", CLEAN);
 must!(bent_tube_noisy, "bent tube", NOISY);
@@ -242,7 +242,7 @@ falls_short!(junction_x_noisy, "junction X", NOISY);
 must!(sphere_slices_apart_clean, "sphere, slices apart", CLEAN);
 must!(sphere_slices_apart_noisy, "sphere, slices apart", NOISY);
 must!(tube_slices_apart_clean, "tube, slices apart", CLEAN);
-falls_short!(tube_slices_apart_noisy, "tube, slices apart", NOISY);
+must!(tube_slices_apart_noisy, "tube, slices apart", NOISY);
 must!(
     disk_with_a_hole_slices_apart_clean,
     "disk with a hole, slices apart",
