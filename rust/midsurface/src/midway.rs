@@ -9,7 +9,7 @@
 use crate::bricks::Batch;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, dot, Vec3};
+use crate::grid::{along, dot, unit, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::Surface;
@@ -29,12 +29,14 @@ const ACROSS: f64 = 0.5;
 /// neighbouring points, whose number is the variance in about two squared edges of the contour, and
 /// by how much a point may be off, work units. What is seen gets surer with each.
 const MOVES: [(usize, f64); 4] = [(12, 2.0), (9, 1.0), (7, 0.8), (6, 0.7)];
+/// Rounds of averaging normals: along rough ones neighbours would move apart, and fold the surface.
+const NORMAL_ROUNDS: usize = 6;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 /// Passes over the points that [`move_midway`] makes, for its progress.
 pub(crate) const PASSES: usize = {
     let rounds = MOVES[0].0 + MOVES[1].0 + MOVES[2].0 + MOVES[3].0;
-    MOVES.len() * (1 + NORMAL_PASSES) + rounds
+    MOVES.len() * (1 + NORMAL_PASSES + NORMAL_ROUNDS) + rounds
 };
 
 /// How far off each point is, and how much of that was seen there.
@@ -77,7 +79,7 @@ fn move_once(
         fraction,
         h,
     } = *label;
-    let normals = &normals(&surface.points, &surface.triangles, fans, execution)?;
+    let normals = &smooth_normals(surface, fans, execution)?;
     let mut seen: Vec<Seen> = zeros(surface.points.len())?;
     let points = &surface.points;
     let source = &surface.source;
@@ -121,6 +123,25 @@ fn move_once(
         }
     }
     Ok(())
+}
+
+/// The points' normals, averaged over the points around.
+fn smooth_normals(surface: &Surface, fans: &Fans, execution: &mut Execution) -> Result<Vec<Vec3>> {
+    let triangles = &surface.triangles;
+    let mut normals = normals(&surface.points, triangles, fans, execution)?;
+    let mut averaged: Vec<Vec3> = zeros(normals.len())?;
+    for _ in 0..NORMAL_ROUNDS {
+        execution.fill(&mut averaged, PIECE, |piece, out| {
+            for (i, out) in out.iter_mut().enumerate() {
+                let p = PIECE * piece + i;
+                let neighbours = fans.neighbours(triangles, p as u32);
+                let own = normals[p].map(|v| 2.0 * v);
+                *out = unit(neighbours.fold(own, |sum, q| along(sum, 1.0, normals[q as usize])));
+            }
+        })?;
+        std::mem::swap(&mut averaged, &mut normals);
+    }
+    Ok(normals)
 }
 
 /// Whether both rays end at faces of the sheet, not at the wall of its rim: just before a ray meets
