@@ -9,11 +9,16 @@ from vtkmodules.vtkCommonCore import vtkStringArray
 from pipeline import FilterTest, arrays, image, run_tests, sheets, source, tube, update
 
 
+def text_of(value):
+    """A vtkVariant as text; its own has six digits, too few to add up."""
+    return value.ToString() if value.IsString() else f"{value.ToDouble():.17g}"
+
+
 def rows_of(table):
     """The rows of a vtkTable as dictionaries by column."""
     names = [table.GetColumnName(index) for index in range(table.GetNumberOfColumns())]
     return [
-        {name: table.GetValueByName(row, name).ToString() for name in names}
+        {name: text_of(table.GetValueByName(row, name)) for name in names}
         for row in range(table.GetNumberOfRows())
     ]
 
