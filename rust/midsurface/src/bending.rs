@@ -35,50 +35,29 @@ struct Sums {
     count: [f32; 3],
 }
 
-/// How the sheets of a batch bend, brick by brick.
-pub(crate) struct Bending(Vec<Sums>);
-
-/// How the sheets around one brick bend: mean of n ⊗ ∂n/∂a for each axis a.
+/// How the sheets in and around a brick bend: mean of n ⊗ ∂n/∂a for each axis a.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Bend([[[f32; 3]; 3]; 3]);
 
-impl Bending {
-    /// From the sheets of the core voxels.
-    pub fn new(
-        batch: &Batch,
-        sheets: &[Sheet],
-        h: Vec3,
-        execution: &mut Execution,
-    ) -> Result<Self> {
-        let bricks = batch.part_of_brick.len();
-        let sums = execution.collect(bricks, |brick| {
-            let own = &sheets[brick * BRICK..][..BRICK];
-            if own.iter().all(|sheet| *sheet == Sheet::default()) {
-                return Sums::default();
-            }
-            Sums::new(&Block::gather(batch, brick, sheets), h)
-        })?;
-        Ok(Self(sums))
-    }
+/// Passes over the bricks that [`bends`] makes, for its progress.
+pub(crate) const PASSES: usize = 2;
 
-    /// How sheets bend in a brick and those around it.
-    pub fn around(&self, batch: &Batch, brick: usize) -> Bend {
-        let (directory, place) = batch.brick(brick);
-        let mut sums = Sums::default();
-        for b in directory.around(place) {
-            let own = &self.0[b];
-            let weight = if b == brick { OWN_WEIGHT } else { 1.0 };
-            for a in 0..3 {
-                let products = own.products[a].map(|row| row.map(|v| weight * v));
-                sums.add(a, weight * own.count[a], &products);
-            }
+/// How the sheets of a batch bend, brick by brick, from those of the core voxels.
+pub(crate) fn bends(
+    batch: &Batch,
+    sheets: &[Sheet],
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<Vec<Bend>> {
+    let bricks = batch.part_of_brick.len();
+    let sums = execution.collect(bricks, |brick| {
+        let own = &sheets[brick * BRICK..][..BRICK];
+        if own.iter().all(|sheet| *sheet == Sheet::default()) {
+            return Sums::default();
         }
-        for (products, count) in sums.products.iter_mut().zip(sums.count) {
-            let share = if count < FEWEST { 0.0 } else { 1.0 / count };
-            products.iter_mut().flatten().for_each(|v| *v *= share);
-        }
-        Bend(sums.products)
-    }
+        Sums::new(&Block::gather(batch, brick, sheets), h)
+    })?;
+    execution.collect(bricks, |brick| Bend::around(batch, brick, &sums))
 }
 
 impl Sums {
@@ -121,6 +100,25 @@ fn change(own: &Sheet, next: &Sheet, a: usize, h: f32) -> Option<[f32; 3]> {
 }
 
 impl Bend {
+    /// From the sums of a brick and those around it.
+    fn around(batch: &Batch, brick: usize, of_bricks: &[Sums]) -> Self {
+        let (directory, place) = batch.brick(brick);
+        let mut sums = Sums::default();
+        for b in directory.around(place) {
+            let own = &of_bricks[b];
+            let weight = if b == brick { OWN_WEIGHT } else { 1.0 };
+            for a in 0..3 {
+                let products = own.products[a].map(|row| row.map(|v| weight * v));
+                sums.add(a, weight * own.count[a], &products);
+            }
+        }
+        for (products, count) in sums.products.iter_mut().zip(sums.count) {
+            let share = if count < FEWEST { 0.0 } else { 1.0 / count };
+            products.iter_mut().flatten().for_each(|v| *v *= share);
+        }
+        Self(sums.products)
+    }
+
     /// How much a normal n changes over a way.
     pub fn change(&self, n: [f32; 3], way: [f32; 3]) -> [f32; 3] {
         let mut change = [0.0; 3];

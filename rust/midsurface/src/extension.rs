@@ -4,7 +4,7 @@
 //! next to it do: a sheet runs on as it bends there (`bending.rs`). Ring by ring, an unknown voxel
 //! takes the mean of what its known neighbours say, each by its own normal and offset.
 
-use crate::bending::{Bend, Bending};
+use crate::bending::{bends, Bend};
 use crate::block::{row, Block, SIDE};
 use crate::bricks::{Batch, BRICK, EDGE};
 use crate::error::Result;
@@ -27,7 +27,7 @@ pub(crate) fn extend(
     sheets: &mut [Sheet],
     execution: &mut Execution,
 ) -> Result<()> {
-    let bending = Bending::new(batch, sheets, h, execution)?;
+    let bends = bends(batch, sheets, h, execution)?;
     let mut open: Vec<usize> = (0..batch.part_of_brick.len()).collect();
     for _ in 0..rings {
         let mut found: Vec<(usize, Vec<(u16, Sheet)>)> = Vec::new();
@@ -40,10 +40,9 @@ pub(crate) fn extend(
                     return (brick, Vec::new());
                 }
                 let known = Block::gather(batch, brick, before);
-                let bend = bending.around(batch, brick);
                 (
                     brick,
-                    ring(&known, &near.largest_near(), farthest, &bend, h),
+                    ring(&known, &near.largest_near(), farthest, &bends[brick], h),
                 )
             },
             |own| {
