@@ -60,6 +60,7 @@ mod interpolation;
 mod manifold;
 mod mesh;
 mod midway;
+mod normals;
 mod polylines;
 mod profile;
 mod quality;

@@ -7,6 +7,7 @@ use crate::flips::flip_edges;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::{Edges, Fans, NONE};
 use crate::manifold::{make_manifold, Surface};
+use crate::normals::{normals, NORMAL_PASSES};
 use crate::polylines::Polylines;
 use crate::terraces::{self, flatten_terraces, LineOfPoint};
 use crate::zipper::Zipped;
@@ -298,48 +299,4 @@ pub(crate) fn turn_outward(points: &[Vec3], triangles: &mut [[u32; 3]]) {
             t.swap(1, 2);
         }
     }
-}
-
-/// Corners handed to a worker at a time, or points.
-const PIECE: usize = 2048;
-/// Passes that [`normals`] makes, for its progress.
-pub(crate) const NORMAL_PASSES: usize = 2;
-
-/// Unit normals of the points (Thürmer and Wüthrich 1998: weighted by the angle at the point).
-/// `fans` are those of the triangles.
-pub(crate) fn normals(
-    points: &[Vec3],
-    triangles: &[[u32; 3]],
-    fans: &Fans,
-    execution: &mut Execution,
-) -> Result<Vec<Vec3>> {
-    let mut weighted: Vec<[Vec3; 3]> = zeros(triangles.len())?;
-    execution.fill(&mut weighted, PIECE, |piece, out| {
-        for (t, out) in triangles[piece * PIECE..].iter().zip(out) {
-            let [a, b, c] = t.map(|p| points[p as usize]);
-            let normal = unit(cross(sub(b, a), sub(c, a)));
-            let corners = [(a, b, c), (b, c, a), (c, a, b)];
-            *out = corners.map(|(p, q, r)| {
-                let cosine = dot(unit(sub(q, p)), unit(sub(r, p)));
-                normal.map(|v| cosine.clamp(-1.0, 1.0).acos() * v)
-            });
-        }
-    })?;
-    let mut normals: Vec<Vec3> = zeros(points.len())?;
-    execution.fill(&mut normals, PIECE, |piece, out| {
-        for (i, out) in out.iter_mut().enumerate() {
-            let corners = fans.of((piece * PIECE + i) as u32);
-            let add = |sum, &e: &u32| along(sum, 1.0, weighted[e as usize / 3][e as usize % 3]);
-            let mut normal = corners.iter().fold([0.0; 3], add);
-            if length(normal) < 1e-6 {
-                // Where triangles fold back on each other their normals cancel: any will do.
-                let sharp = |e: &&u32| length(weighted[**e as usize / 3][**e as usize % 3]) > 0.0;
-                if let Some(&e) = corners.iter().find(sharp) {
-                    normal = weighted[e as usize / 3][e as usize % 3];
-                }
-            }
-            *out = unit(normal);
-        }
-    })?;
-    Ok(normals)
 }

@@ -9,11 +9,11 @@
 use crate::bricks::Batch;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, dot, unit, Vec3};
+use crate::grid::{along, dot, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::Surface;
-use crate::mesh::{normals, NORMAL_PASSES};
+use crate::normals::{average_normals, normals, NORMAL_PASSES};
 use crate::thickness::View;
 
 /// Sheet fraction below which the faces seen may be a rim's.
@@ -79,7 +79,9 @@ fn move_once(
         fraction,
         h,
     } = *label;
-    let normals = &smooth_normals(surface, fans, execution)?;
+    let triangles = &surface.triangles;
+    let rough = normals(&surface.points, triangles, fans, execution)?;
+    let normals = &average_normals(rough, triangles, fans, NORMAL_ROUNDS, execution)?;
     let mut seen: Vec<Seen> = zeros(surface.points.len())?;
     let points = &surface.points;
     let source = &surface.source;
@@ -123,25 +125,6 @@ fn move_once(
         }
     }
     Ok(())
-}
-
-/// The points' normals, averaged over the points around.
-fn smooth_normals(surface: &Surface, fans: &Fans, execution: &mut Execution) -> Result<Vec<Vec3>> {
-    let triangles = &surface.triangles;
-    let mut normals = normals(&surface.points, triangles, fans, execution)?;
-    let mut averaged: Vec<Vec3> = zeros(normals.len())?;
-    for _ in 0..NORMAL_ROUNDS {
-        execution.fill(&mut averaged, PIECE, |piece, out| {
-            for (i, out) in out.iter_mut().enumerate() {
-                let p = PIECE * piece + i;
-                let neighbours = fans.neighbours(triangles, p as u32);
-                let own = normals[p].map(|v| 2.0 * v);
-                *out = unit(neighbours.fold(own, |sum, q| along(sum, 1.0, normals[q as usize])));
-            }
-        })?;
-        std::mem::swap(&mut averaged, &mut normals);
-    }
-    Ok(normals)
 }
 
 /// Whether both rays end at faces of the sheet, not at the wall of its rim: just before a ray meets

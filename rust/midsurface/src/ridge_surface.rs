@@ -7,6 +7,7 @@
 //! (`weld.rs`), moved midway between both faces (`midway.rs`) and remeshed (`remesh`). How much of
 //! the progress a stage is given is how long it took on the membranes of real cells.
 
+use crate::bending;
 use crate::bricks::Batch;
 use crate::components::Part;
 use crate::contour;
@@ -19,8 +20,9 @@ use crate::grid::{Grid, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::{make_manifold, Surface};
-use crate::mesh::{is_degenerate, normals, turn_outward, Mesh, NORMAL_PASSES};
+use crate::mesh::{is_degenerate, turn_outward, Mesh};
 use crate::midway::{self, move_midway, Label};
+use crate::normals::{normals, NORMAL_PASSES};
 use crate::profile::Profile;
 use crate::remesh::remesh;
 use crate::rim::{self, sheet_fraction};
@@ -164,7 +166,7 @@ fn find_sheets(
     let farthest = (FARTHEST * h.iter().copied().fold(1.0, f64::max)) as f32;
     let mut sheets = core_sheets(batch, &profile, distance, farthest, h, execution)?;
     drop(profile);
-    execution.stage("Extending sheets", 0.27, 0.38, 1 + RINGS)?;
+    execution.stage("Extending sheets", 0.27, 0.38, bending::PASSES + RINGS)?;
     extend(batch, distance, RINGS, farthest, h, &mut sheets, execution)?;
     execution.stage("Settling sheets", 0.38, 0.47, SETTLINGS)?;
     for _ in 0..SETTLINGS {

@@ -10,10 +10,11 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::reference::Reference;
-use crate::error::{zeros, Result};
+use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, dot, length, sub, unit, Vec3};
+use crate::grid::{dot, length, sub, Vec3};
 use crate::halfedge::{ends, Fans};
+use crate::normals::average_normals;
 
 /// How far a flat triangle may be from the surface, in units of the finest spacing.
 const CHORD: f64 = 0.1;
@@ -37,7 +38,9 @@ pub(super) fn sizes(
     edge_length: f64,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
-    let normals = smooth_normals(reference, fans, execution)?;
+    let mut normals: Vec<Vec3> = reserved(reference.normals.len())?;
+    normals.extend(reference.normals.iter().map(|n| n.map(f64::from)));
+    let normals = average_normals(normals, reference.triangles, fans, SMOOTHING, execution)?;
     let mut sizes: Vec<f32> = zeros(reference.points.len())?;
     execution.fill(&mut sizes, PIECE, |piece, out| {
         for (i, size) in out.iter_mut().enumerate() {
@@ -63,36 +66,11 @@ fn bounded(wanted: f64, edge_length: f64) -> f32 {
     wanted.max(FINEST).min(edge_length) as f32
 }
 
-/// Normals averaged over their neighbours a few times.
-fn smooth_normals(
-    reference: &Reference,
-    fans: &Fans,
-    execution: &mut Execution,
-) -> Result<Vec<[f32; 3]>> {
-    let mut now = reference.normals.clone();
-    let mut smooth: Vec<[f32; 3]> = zeros(now.len())?;
-    for _ in 0..SMOOTHING {
-        execution.fill(&mut smooth, PIECE, |piece, out| {
-            for (i, normal) in out.iter_mut().enumerate() {
-                let p = (piece * PIECE + i) as u32;
-                let mut sum = now[p as usize].map(f64::from);
-                for q in fans.neighbours(reference.triangles, p) {
-                    sum = along(sum, 0.5, now[q as usize].map(f64::from));
-                }
-                *normal = unit(sum).map(|v| v as f32);
-            }
-        })?;
-        std::mem::swap(&mut now, &mut smooth);
-    }
-    Ok(now)
-}
-
 /// The change of the normals around a point over the way it takes: 1 / R on a sphere.
-fn curvature(reference: &Reference, fans: &Fans, normals: &[[f32; 3]], p: u32) -> f64 {
-    let normal = |p: u32| -> Vec3 { normals[p as usize].map(f64::from) };
+fn curvature(reference: &Reference, fans: &Fans, normals: &[Vec3], p: u32) -> f64 {
     let (mut turned, mut way) = (0.0, 0.0);
     for q in fans.neighbours(reference.triangles, p) {
-        let turn = sub(normal(q), normal(p));
+        let turn = sub(normals[q as usize], normals[p as usize]);
         let step = sub(reference.points[q as usize], reference.points[p as usize]);
         turned += dot(turn, turn);
         way += dot(step, step);
