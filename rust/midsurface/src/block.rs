@@ -106,30 +106,22 @@ impl<T: Copy> Block<T> {
     }
 }
 
-impl Block<f32> {
-    /// Continues the field linearly across the borders of the volume, the block's brick being at
-    /// `place`.
-    pub fn continue_beyond(&mut self, directory: &Directory, place: [usize; 3]) {
-        self.fill_beyond(directory, place, |outermost, before| {
-            2.0 * outermost - before
-        });
-    }
-
+impl<T: Copy + Default + PartialOrd> Block<T> {
     /// The largest value among each voxel of the brick and its 26 neighbours.
     #[inline(always)]
-    pub fn largest_near(&self) -> [f32; BRICK] {
-        let larger = |a: f32, b: f32| if a > b { a } else { b };
-        let three = |v: &[f32], i: usize, stride: usize| {
+    pub fn largest_near(&self) -> [T; BRICK] {
+        let larger = |a: T, b: T| if a > b { a } else { b };
+        let three = |v: &[T], i: usize, stride: usize| {
             larger(larger(v[i], v[i + stride]), v[i + 2 * stride])
         };
-        let mut along_x = [0.0; SIDE * SIDE * EDGE];
+        let mut along_x = [T::default(); SIDE * SIDE * EDGE];
         let rows = self.values.chunks_exact(SIDE);
         for (values, out) in rows.zip(along_x.chunks_exact_mut(EDGE)) {
             for (x, out) in out.iter_mut().enumerate() {
                 *out = three(values, x, 1);
             }
         }
-        let mut along_y = [0.0; SIDE * LAYER];
+        let mut along_y = [T::default(); SIDE * LAYER];
         let layers = along_x.chunks_exact(SIDE * EDGE);
         for (values, out) in layers.zip(along_y.chunks_exact_mut(LAYER)) {
             for (i, out) in out.iter_mut().enumerate() {
@@ -137,6 +129,16 @@ impl Block<f32> {
             }
         }
         std::array::from_fn(|i| three(&along_y, i, LAYER))
+    }
+}
+
+impl Block<f32> {
+    /// Continues the field linearly across the borders of the volume, the block's brick being at
+    /// `place`.
+    pub fn continue_beyond(&mut self, directory: &Directory, place: [usize; 3]) {
+        self.fill_beyond(directory, place, |outermost, before| {
+            2.0 * outermost - before
+        });
     }
 
     /// The field in layer z of the brick.

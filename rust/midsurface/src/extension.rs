@@ -16,34 +16,41 @@ use crate::sheet::{dot, Sheet};
 const ALIKE: f32 = 0.7;
 const NEAR: f32 = 0.75;
 
+/// The ring in which a voxel learnt its sheet: never yet, 1 for core voxels, and so on; `FAR` where
+/// no label is within a voxel, and no sheet is wanted.
+type Ring = u8;
+const NEVER: Ring = 0;
+const CORE: Ring = 1;
+const FAR: Ring = Ring::MAX;
+
 /// Extends the sheets by so many `rings` of voxels, up to one voxel beyond the label and up to
 /// offsets of `farthest`.
 pub(crate) fn extend(
     batch: &Batch,
     distance: &[f32],
-    rings: usize,
+    rings: Ring,
     farthest: f32,
     h: Vec3,
     sheets: &mut [Sheet],
     execution: &mut Execution,
 ) -> Result<()> {
     let bends = bends(batch, sheets, h, execution)?;
+    let mut learnt_in = core_rings(batch, distance, sheets, execution)?;
     let mut open: Vec<usize> = (0..batch.part_of_brick.len()).collect();
-    for _ in 0..rings {
+    for last in CORE..CORE + rings {
         let mut found: Vec<(usize, Vec<(u16, Sheet)>)> = Vec::new();
-        let before = &*sheets;
+        let (before, rings) = (&*sheets, &learnt_in);
         execution.stream(
             &open,
             |&brick| {
-                let near = Block::gather(batch, brick, distance);
-                if near.values.iter().all(|d| *d == 0.0) {
-                    return (brick, Vec::new());
-                }
-                let known = Block::gather(batch, brick, before);
-                (
-                    brick,
-                    ring(&known, &near.largest_near(), farthest, &bends[brick], h),
-                )
+                let front = front(batch, brick, rings, last);
+                let learnt = if front.is_empty() {
+                    Vec::new()
+                } else {
+                    let known = Block::gather(batch, brick, before);
+                    ring(&known, &front, farthest, &bends[brick], h)
+                };
+                (brick, learnt)
             },
             |own| {
                 if !own.1.is_empty() {
@@ -56,7 +63,9 @@ pub(crate) fn extend(
         let mut next = vec![false; batch.part_of_brick.len()];
         for (brick, own) in &found {
             for (i, sheet) in own {
-                sheets[brick * BRICK + *i as usize] = *sheet;
+                let entry = brick * BRICK + *i as usize;
+                sheets[entry] = *sheet;
+                learnt_in[entry] = last + 1;
             }
             let (directory, place) = batch.brick(*brick);
             directory.around(place).for_each(|b| next[b] = true);
@@ -69,29 +78,65 @@ pub(crate) fn extend(
     Ok(())
 }
 
-/// The voxels of a brick that learn their sheet in this ring.
+/// Which voxels know their sheet from the start, and which never will.
+fn core_rings(
+    batch: &Batch,
+    distance: &[f32],
+    sheets: &[Sheet],
+    execution: &mut Execution,
+) -> Result<Vec<Ring>> {
+    let rings = execution.collect(batch.part_of_brick.len(), |brick| {
+        let near = Block::gather(batch, brick, distance);
+        if near.values.iter().all(|d| *d == 0.0) {
+            return [FAR; BRICK];
+        }
+        let near = near.largest_near();
+        let own = &sheets[brick * BRICK..][..BRICK];
+        std::array::from_fn(|i| match own[i] == Sheet::default() {
+            false => CORE,
+            true if near[i] > 0.0 => NEVER,
+            true => FAR,
+        })
+    })?;
+    Ok(rings.into_flattened())
+}
+
+/// The voxels of a brick that want a sheet and have a neighbour that learnt its own in the `last`
+/// ring; for the others nothing is new.
+fn front(batch: &Batch, brick: usize, rings: &[Ring], last: Ring) -> Vec<u16> {
+    let own = &rings[brick * BRICK..][..BRICK];
+    if !own.contains(&NEVER) {
+        return Vec::new();
+    }
+    let mut block = Block::gather(batch, brick, rings);
+    let mut any = false;
+    for ring in &mut block.values {
+        any |= *ring == last;
+        *ring = Ring::from(*ring == last);
+    }
+    if !any {
+        return Vec::new();
+    }
+    let near = block.largest_near();
+    let is_front = |i: &u16| own[usize::from(*i)] == NEVER && near[usize::from(*i)] > 0;
+    (0..BRICK as u16).filter(is_front).collect()
+}
+
+/// The voxels of a brick's front that learn their sheet in this ring.
 fn ring(
     known: &Block<Sheet>,
-    near: &[f32; BRICK],
+    front: &[u16],
     farthest: f32,
     bend: &Bend,
     h: Vec3,
 ) -> Vec<(u16, Sheet)> {
-    let mut learnt = Vec::new();
-    if known.values.iter().all(|sheet| *sheet == Sheet::default()) {
-        return learnt;
-    }
-    for (i, near) in near.iter().enumerate() {
+    let learn = |&voxel: &u16| {
+        let i = usize::from(voxel);
         let at = row(i / EDGE % EDGE, i / EDGE / EDGE) + i % EDGE;
-        if *near > 0.0 && known.values[at] == Sheet::default() {
-            if let Some(sheet) = continued(known, at, bend, h) {
-                if sheet[3].abs() <= farthest {
-                    learnt.push((i as u16, sheet));
-                }
-            }
-        }
-    }
-    learnt
+        let sheet = continued(known, at, bend, h)?;
+        (sheet[3].abs() <= farthest).then_some((voxel, sheet))
+    };
+    front.iter().filter_map(learn).collect()
 }
 
 /// What the known neighbours of a voxel say of its sheet: the mean of those that agree with the

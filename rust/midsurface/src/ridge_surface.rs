@@ -42,7 +42,7 @@ const FARTHEST: f64 = 2.0;
 /// Times that neighbouring sheets settle.
 const SETTLINGS: usize = 4;
 /// Rings of voxels that sheets are extended by, at most.
-const RINGS: usize = 12;
+const RINGS: u8 = 12;
 /// End of the passband of the low-pass that flattens terraces: shorter waves than for lines, since
 /// midway points have fewer terraces, and thick membranes have bends of their own.
 const PASSBAND: f64 = 0.12;
@@ -166,7 +166,7 @@ fn find_sheets(
     let farthest = (FARTHEST * h.iter().copied().fold(1.0, f64::max)) as f32;
     let mut sheets = core_sheets(batch, &profile, distance, farthest, h, execution)?;
     drop(profile);
-    execution.stage("Extending sheets", 0.27, 0.38, bending::PASSES + RINGS)?;
+    execution.stage("Extending sheets", 0.27, 0.38, bending::PASSES + 1 + usize::from(RINGS))?;
     extend(batch, distance, RINGS, farthest, h, &mut sheets, execution)?;
     execution.stage("Settling sheets", 0.38, 0.47, SETTLINGS)?;
     for _ in 0..SETTLINGS {
