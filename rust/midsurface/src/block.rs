@@ -142,6 +142,7 @@ impl Block<f32> {
     }
 
     /// The field in layer z of the brick.
+    #[inline(always)]
     pub fn layer(&self, z: usize) -> Layer {
         std::array::from_fn(|i| self.values[row(i / EDGE, z) + i % EDGE])
     }

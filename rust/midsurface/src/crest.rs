@@ -16,6 +16,7 @@ use crate::grid::{dot as dot3, Vec3};
 use crate::profile::{Derivatives, Profile};
 use crate::separable::{self, smooth_some, Kernel};
 use crate::sheet::{dot, source, unshrink, Sheet, ENTRIES, TRUSTED};
+use crate::vectors::with_widest_vectors;
 
 /// A core voxel's profile falls within the sheet by at most this much, in σ² times curvature.
 const TANGENTIAL: f32 = 0.6;
@@ -49,7 +50,10 @@ pub(crate) fn core_sheets(
             return [0.0; ENTRIES * BRICK];
         }
         let border = border(brick);
-        tensors(&profile.derivatives(batch, brick, h), own, border.as_ref())
+        with_widest_vectors(
+            #[inline(always)]
+            || tensors(&profile.derivatives(batch, brick, h), own, border.as_ref()),
+        )
     })?;
     let tensors = smooth_tensors(batch, &sigma, tensors.into_flattened(), h, execution)?;
     let sheets = execution.collect(bricks, |brick| {
@@ -58,8 +62,13 @@ pub(crate) fn core_sheets(
             return [Sheet::default(); BRICK];
         }
         let tensors = &tensors[brick * BRICK * ENTRIES..][..BRICK * ENTRIES];
-        let derivatives = profile.derivatives(batch, brick, h);
-        let mut sheets = sheets_of_brick(&derivatives, tensors, &near.largest_near(), farthest);
+        let mut sheets = with_widest_vectors(
+            #[inline(always)]
+            || {
+                let derivatives = profile.derivatives(batch, brick, h);
+                sheets_of_brick(&derivatives, tensors, &near.largest_near(), farthest)
+            },
+        );
         if let Some(border) = border(brick) {
             for (i, sheet) in sheets.iter_mut().enumerate() {
                 if border.cuts(i, [sheet[0], sheet[1], sheet[2]]) {
@@ -170,6 +179,7 @@ fn entry(k: usize, z: usize) -> std::ops::Range<usize> {
 
 /// The tensors of a brick's voxels before smoothing, weighted; zero outside the label and where a
 /// border cuts the profile.
+#[inline(always)]
 fn tensors(
     layers: &[Derivatives],
     distance: &[f32],
@@ -180,13 +190,25 @@ fn tensors(
         if distance.iter().all(|d| *d == 0.0) {
             continue;
         }
-        let mut products = [[0.0; LAYER]; ENTRIES];
+        let mut sources = [[0.0; LAYER]; 3];
         for i in 0..LAYER {
             // Relative to σ, so that a thick sheet does not outshout a thin one beside it.
             let hessian = layer.hessian.each_ref().map(|entry| entry[i]);
             let e = source(hessian, distance[i] / layer.sigma[i]);
-            let is_cut = border.is_some_and(|border| border.cuts(z * LAYER + i, e));
-            let e = if is_cut { [0.0; 3] } else { e };
+            for (sources, v) in sources.iter_mut().zip(e) {
+                sources[i] = v;
+            }
+        }
+        if let Some(border) = border {
+            for i in 0..LAYER {
+                if border.cuts(z * LAYER + i, sources.each_ref().map(|e| e[i])) {
+                    sources.iter_mut().for_each(|e| e[i] = 0.0);
+                }
+            }
+        }
+        let mut products = [[0.0; LAYER]; ENTRIES];
+        for i in 0..LAYER {
+            let e = sources.each_ref().map(|e| e[i]);
             let trust = trust(layer, i, e);
             let e = e.map(|v| v * trust);
             let zz = e[2] * e[2];
@@ -247,6 +269,7 @@ fn smooth_tensors(
 }
 
 /// The sheets of a brick's core voxels, where the label is `near`.
+#[inline(always)]
 fn sheets_of_brick(
     layers: &[Derivatives],
     tensors: &[f32],

@@ -85,6 +85,7 @@ impl Profile {
     }
 
     /// The derivatives in the layers of a brick.
+    #[inline(always)]
     pub fn derivatives(&self, batch: &Batch, brick: usize, h: Vec3) -> Vec<Derivatives> {
         let coordinate = self.half_thickness.brick(batch, brick).map(level);
         let wanted = levels_of(&coordinate);
@@ -111,6 +112,7 @@ impl Profile {
 
 impl Derivatives {
     /// Adds what one level says, with a weight for each voxel.
+    #[inline(always)]
     fn blend(&mut self, block: &Block<f32>, z: usize, weight: Layer, h: Vec3) {
         if weight.iter().all(|w| *w == 0.0) {
             return;
