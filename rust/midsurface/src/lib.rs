@@ -64,6 +64,7 @@ mod normals;
 mod polylines;
 mod profile;
 mod quality;
+mod ray;
 mod remesh;
 mod resample;
 mod ridge;

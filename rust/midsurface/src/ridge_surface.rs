@@ -166,7 +166,12 @@ fn find_sheets(
     let farthest = (FARTHEST * h.iter().copied().fold(1.0, f64::max)) as f32;
     let mut sheets = core_sheets(batch, &profile, distance, farthest, h, execution)?;
     drop(profile);
-    execution.stage("Extending sheets", 0.27, 0.38, bending::PASSES + 1 + usize::from(RINGS))?;
+    execution.stage(
+        "Extending sheets",
+        0.27,
+        0.38,
+        bending::PASSES + 1 + usize::from(RINGS),
+    )?;
     extend(batch, distance, RINGS, farthest, h, &mut sheets, execution)?;
     execution.stage("Settling sheets", 0.38, 0.47, SETTLINGS)?;
     for _ in 0..SETTLINGS {

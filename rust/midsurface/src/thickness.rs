@@ -1,19 +1,9 @@
 //! Both faces of the label as seen from a point of the mid-surface: how thick the label is there,
 //! and how far off its middle the point lies.
 
-use crate::bricks::{BRICK, EDGE, LAYER};
-use crate::grid::{along, length, round, unit, Vec3};
+use crate::grid::{length, round, unit, Vec3};
 use crate::interpolation::Sampler;
-
-/// Step along the ray, work units; the face is then found by bisection.
-const STEP: f64 = 0.5;
-
-/// How a ray through the label ended, after which length.
-#[derive(Clone, Copy)]
-enum Reach {
-    Face(f64),
-    Border,
-}
+use crate::ray::{Ray, Reach};
 
 /// What a point sees of the label, work units.
 pub(crate) struct View {
@@ -36,7 +26,9 @@ impl View {
     /// rays or the ridge field's reach ends in the unknown, the middle is looked for parallel to
     /// the border: across a sheet that is flat nearby, every line's middle is on the mid-surface.
     pub fn new(distance: &Sampler, from: Vec3, normal: Vec3) -> Self {
-        let look = |v: Vec3| [v, v.map(|x| -x)].map(|direction| face(distance, from, direction));
+        let look = |v: Vec3| {
+            [v, v.map(|x| -x)].map(|direction| Ray::new(distance, from, direction).reach())
+        };
         let ahead = look(normal);
         let about = match ahead {
             [Reach::Face(a), Reach::Face(b)] => a + b,
@@ -102,89 +94,9 @@ fn parallel_to_border(distance: &Sampler, p: Vec3, normal: Vec3, thickness: f64)
     std::array::from_fn(|a| if near(a) { 0.0 } else { normal[a] })
 }
 
-/// Follows a ray until the label ends.
-fn face(distance: &Sampler, from: Vec3, direction: Vec3) -> Reach {
-    let most = (2.0 * crate::distance::LARGEST / STEP) as usize;
-    let mut t = 0.0;
-    for _ in 0..most {
-        // Deep in the label no face is near: the ray may jump.
-        let step = (depth(distance, along(from, t, direction)) - 1.5).max(STEP);
-        match labelled(distance, along(from, t + step, direction)) {
-            None => return Reach::Border,
-            Some(now) if now < 0.5 => {
-                return Reach::Face(crossing(distance, from, direction, t, step))
-            }
-            Some(_) => t += step,
-        }
-    }
-    Reach::Face(t)
-}
-
-/// Where within `step` of t the label ends, by bisection.
-fn crossing(distance: &Sampler, from: Vec3, direction: Vec3, t: f64, step: f64) -> f64 {
-    let (mut low, mut high) = (t, t + step);
-    for _ in 0..6 {
-        let middle = 0.5 * (low + high);
-        let inside = labelled(distance, along(from, middle, direction)).is_some_and(|m| m >= 0.5);
-        if inside {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
-}
-
 /// Distance to the outside at the voxel nearest to a point, 0 outside the label.
 pub(crate) fn depth(distance: &Sampler, p: Vec3) -> f64 {
     let voxel = std::array::from_fn(|a| round(p[a] / distance.h[a]));
     let entry = distance.directory.entry_at(voxel);
     entry.map_or(0.0, |entry| distance.field[entry].into())
-}
-
-/// The label's mask at a point, linear between voxels; `None` outside the volume.
-fn labelled(distance: &Sampler, p: Vec3) -> Option<f64> {
-    let voxel: Vec3 = std::array::from_fn(|a| p[a] / distance.h[a]);
-    let dimensions = distance.directory.dimensions;
-    if (0..3).any(|a| voxel[a] < 0.0 || voxel[a] > (dimensions[a] - 1) as f64) {
-        return None;
-    }
-    // None is negative, so that a cast is the floor.
-    let low = voxel.map(|v| v as usize);
-    let t: Vec3 = std::array::from_fn(|a| voxel[a] - low[a] as f64);
-    let [x, y, z] = t.map(|t| [1.0 - t, t]);
-    let weight = |corner: usize| x[corner & 1] * y[corner >> 1 & 1] * z[corner >> 2];
-    let directory = distance.directory;
-    let mut sum = 0.0;
-    if low.iter().all(|v| v % EDGE + 1 < EDGE) {
-        // All eight voxels are in one brick.
-        let Some(first) = directory.entry(low) else {
-            return Some(0.0);
-        };
-        let field = &distance.field[first..][..LAYER + EDGE + 2];
-        for corner in 0..8 {
-            let offset = (corner >> 2) * LAYER + (corner >> 1 & 1) * EDGE + (corner & 1);
-            let labelled = field[offset] > 0.0;
-            sum += if labelled { weight(corner) } else { 0.0 };
-        }
-        return Some(sum);
-    }
-    // The corners are in up to eight bricks, mostly in two.
-    let mut brick = [None; 8];
-    let crosses: [usize; 3] = std::array::from_fn(|a| usize::from(low[a] % EDGE + 1 == EDGE));
-    for corner in 0..8 {
-        let side: [usize; 3] = std::array::from_fn(|a| corner >> a & crosses[a]);
-        let first = side[0] | side[1] << 1 | side[2] << 2;
-        if corner == first {
-            let place = std::array::from_fn(|a| low[a] / EDGE + side[a]);
-            brick[corner] = directory.brick(place);
-        }
-        if let Some(brick) = brick[first] {
-            let [x, y, z]: [usize; 3] =
-                std::array::from_fn(|a| (low[a] + (corner >> a & 1)) % EDGE);
-            let labelled = distance.field[brick * BRICK + z * LAYER + y * EDGE + x] > 0.0;
-            sum += if labelled { weight(corner) } else { 0.0 };
-        }
-    }
-    Some(sum)
 }
