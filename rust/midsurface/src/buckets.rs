@@ -30,6 +30,18 @@ impl<T: Copy + Default> Buckets<T> {
         Self { start, list }
     }
 
+    /// Buckets that `add` fills one after the other, given the list to append to.
+    pub fn fill(count: usize, items: usize, mut add: impl FnMut(usize, &mut Vec<T>)) -> Self {
+        let mut start = Vec::with_capacity(count + 1);
+        let mut list = Vec::with_capacity(items);
+        start.push(0);
+        for bucket in 0..count {
+            add(bucket, &mut list);
+            start.push(list.len() as u32);
+        }
+        Self { start, list }
+    }
+
     /// Number of buckets.
     pub fn count(&self) -> usize {
         self.start.len() - 1

@@ -89,16 +89,20 @@ impl Fans {
         self.0.of(p as usize)
     }
 
-    /// The other corners of a point's triangles: most neighbours twice, those along a boundary once.
-    pub fn neighbours<'a>(
-        &'a self,
-        triangles: &'a [[u32; 3]],
-        p: u32,
-    ) -> impl Iterator<Item = u32> + 'a {
+    /// The points that share an edge with each point, each once.
+    pub fn neighbours(&self, triangles: &[[u32; 3]]) -> Buckets<u32> {
         let corner = |e: u32| ends(triangles, e).0;
-        self.of(p)
-            .iter()
-            .flat_map(move |&e| [corner(next(e)), corner(previous(e))])
+        Buckets::fill(self.0.count(), triangles.len() * 3, |p, neighbours| {
+            let first = neighbours.len();
+            let half_edges = self.0.of(p);
+            neighbours.extend(half_edges.iter().map(|&e| corner(next(e))));
+            // Where the point is on a boundary, one of them is only found backwards.
+            for q in half_edges.iter().map(|&e| corner(previous(e))) {
+                if !neighbours[first..].contains(&q) {
+                    neighbours.push(q);
+                }
+            }
+        })
     }
 
     /// The opposite half-edge of a half-edge of a consistently wound manifold, or [`NONE`].

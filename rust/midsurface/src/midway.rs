@@ -7,6 +7,7 @@
 //! number along the normals, neither shrinks nor bends what is curved.
 
 use crate::bricks::Batch;
+use crate::buckets::Buckets;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, Vec3};
@@ -60,8 +61,15 @@ pub(crate) fn move_midway(
     execution: &mut Execution,
 ) -> Result<()> {
     let fans = Fans::new(&surface.triangles, surface.points.len());
+    let neighbours = fans.neighbours(&surface.triangles);
     for (rounds, most) in MOVES {
-        move_once(label, surface, &fans, (rounds, most), execution)?;
+        move_once(
+            label,
+            surface,
+            (&fans, &neighbours),
+            (rounds, most),
+            execution,
+        )?;
     }
     Ok(())
 }
@@ -69,7 +77,7 @@ pub(crate) fn move_midway(
 fn move_once(
     label: &Label,
     surface: &mut Surface,
-    fans: &Fans,
+    (fans, neighbours): (&Fans, &Buckets<u32>),
     (rounds, most): (usize, f64),
     execution: &mut Execution,
 ) -> Result<()> {
@@ -81,7 +89,7 @@ fn move_once(
     } = *label;
     let triangles = &surface.triangles;
     let rough = normals(&surface.points, triangles, fans, execution)?;
-    let normals = &average_normals(rough, triangles, fans, NORMAL_ROUNDS, execution)?;
+    let normals = &average_normals(rough, neighbours, NORMAL_ROUNDS, execution)?;
     let mut seen: Vec<Seen> = zeros(surface.points.len())?;
     let points = &surface.points;
     let source = &surface.source;
@@ -108,7 +116,7 @@ fn move_once(
     for _ in 0..rounds {
         execution.fill(&mut averaged, PIECE, |piece, out| {
             for (i, out) in out.iter_mut().enumerate() {
-                *out = mean(&seen, fans, &surface.triangles, PIECE * piece + i);
+                *out = mean(&seen, neighbours, PIECE * piece + i);
             }
         })?;
         std::mem::swap(&mut averaged, &mut seen);
@@ -150,13 +158,13 @@ fn within_volume(p: Vec3, n: Vec3, off: f64, last: Vec3) -> Vec3 {
     std::array::from_fn(|a| moved[a].clamp(0.0, last[a]))
 }
 
-/// Mean over a point and its neighbours; those within the surface count twice, as does the point.
-fn mean(seen: &[Seen], fans: &Fans, triangles: &[[u32; 3]], p: usize) -> Seen {
-    let own = seen[p].map(|v| 2.0 * v);
-    let neighbours = fans.neighbours(triangles, p as u32);
-    let ([off, weight], count) = neighbours.fold((own, 2.0), |([off, weight], count), q| {
+/// Mean over a point and its neighbours.
+fn mean(seen: &[Seen], neighbours: &Buckets<u32>, p: usize) -> Seen {
+    let neighbours = neighbours.of(p);
+    let [off, weight] = neighbours.iter().fold(seen[p], |[off, weight], &q| {
         let [next_off, next_weight] = seen[q as usize];
-        ([off + next_off, weight + next_weight], count + 1.0)
+        [off + next_off, weight + next_weight]
     });
+    let count = (1 + neighbours.len()) as f32;
     [off / count, weight / count]
 }

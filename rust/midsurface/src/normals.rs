@@ -1,5 +1,6 @@
 //! Normals of a mesh's points.
 
+use crate::buckets::Buckets;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
@@ -50,11 +51,10 @@ pub(crate) fn normals(
 }
 
 /// Unit normals averaged so many rounds over the points around, so that noise and terraces of the
-/// surface do not show in them. A point counts twice; those that share two triangles with it, too.
+/// surface do not show in them.
 pub(crate) fn average_normals(
     mut normals: Vec<Vec3>,
-    triangles: &[[u32; 3]],
-    fans: &Fans,
+    neighbours: &Buckets<u32>,
     rounds: usize,
     execution: &mut Execution,
 ) -> Result<Vec<Vec3>> {
@@ -63,9 +63,8 @@ pub(crate) fn average_normals(
         execution.fill(&mut averaged, PIECE, |piece, out| {
             for (i, out) in out.iter_mut().enumerate() {
                 let p = PIECE * piece + i;
-                let neighbours = fans.neighbours(triangles, p as u32);
-                let own = normals[p].map(|v| 2.0 * v);
-                *out = unit(neighbours.fold(own, |sum, q| along(sum, 1.0, normals[q as usize])));
+                let add = |sum, &q: &u32| along(sum, 1.0, normals[q as usize]);
+                *out = unit(neighbours.of(p).iter().fold(normals[p], add));
             }
         })?;
         std::mem::swap(&mut averaged, &mut normals);

@@ -10,6 +10,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::reference::Reference;
+use crate::buckets::Buckets;
 use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, length, sub, Vec3};
@@ -38,14 +39,15 @@ pub(super) fn sizes(
     edge_length: f64,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
+    let neighbours = &fans.neighbours(reference.triangles);
     let mut normals: Vec<Vec3> = reserved(reference.normals.len())?;
     normals.extend(reference.normals.iter().map(|n| n.map(f64::from)));
-    let normals = average_normals(normals, reference.triangles, fans, SMOOTHING, execution)?;
+    let normals = average_normals(normals, neighbours, SMOOTHING, execution)?;
     let mut sizes: Vec<f32> = zeros(reference.points.len())?;
     execution.fill(&mut sizes, PIECE, |piece, out| {
         for (i, size) in out.iter_mut().enumerate() {
             let p = (piece * PIECE + i) as u32;
-            let curvature = curvature(reference, fans, &normals, p);
+            let curvature = curvature(reference, neighbours, &normals, p);
             *size = bounded((6.0 * CHORD / curvature).sqrt(), edge_length);
         }
     })?;
@@ -57,7 +59,7 @@ pub(super) fn sizes(
         let size = &mut sizes[p as usize];
         *size = size.min(wanted);
     }
-    grade(reference, fans, edge_length as f32, &mut sizes);
+    grade(reference, neighbours, edge_length as f32, &mut sizes);
     Ok(sizes)
 }
 
@@ -67,9 +69,9 @@ fn bounded(wanted: f64, edge_length: f64) -> f32 {
 }
 
 /// The change of the normals around a point over the way it takes: 1 / R on a sphere.
-fn curvature(reference: &Reference, fans: &Fans, normals: &[Vec3], p: u32) -> f64 {
+fn curvature(reference: &Reference, neighbours: &Buckets<u32>, normals: &[Vec3], p: u32) -> f64 {
     let (mut turned, mut way) = (0.0, 0.0);
-    for q in fans.neighbours(reference.triangles, p) {
+    for &q in neighbours.of(p as usize) {
         let turn = sub(normals[q as usize], normals[p as usize]);
         let step = sub(reference.points[q as usize], reference.points[p as usize]);
         turned += dot(turn, turn);
@@ -83,7 +85,7 @@ fn curvature(reference: &Reference, fans: &Fans, normals: &[Vec3], p: u32) -> f6
 }
 
 /// Limits the growth of the sizes along the surface, from the fine places outward.
-fn grade(reference: &Reference, fans: &Fans, edge_length: f32, sizes: &mut [f32]) {
+fn grade(reference: &Reference, neighbours: &Buckets<u32>, edge_length: f32, sizes: &mut [f32]) {
     // Sizes are positive, so that their bits order as they do.
     let mut heap: BinaryHeap<Reverse<(u32, u32)>> = (0..sizes.len() as u32)
         .filter(|&p| sizes[p as usize] < edge_length)
@@ -93,7 +95,7 @@ fn grade(reference: &Reference, fans: &Fans, edge_length: f32, sizes: &mut [f32]
         if bits != sizes[p as usize].to_bits() {
             continue;
         }
-        for q in fans.neighbours(reference.triangles, p) {
+        for &q in neighbours.of(p as usize) {
             let way = length(sub(
                 reference.points[q as usize],
                 reference.points[p as usize],
