@@ -5,6 +5,9 @@ use crate::grid::{length, round, unit, Vec3};
 use crate::interpolation::Sampler;
 use crate::ray::{Ray, Reach};
 
+/// The thickness that a point beside the label is given, work units: others are divided by it.
+const LEAST: f64 = 0.01;
+
 /// What a point sees of the label, work units.
 pub(crate) struct View {
     /// The sheet's unit normal.
@@ -72,6 +75,7 @@ impl View {
             (.., Some([Reach::Face(a), _] | [_, Reach::Face(a)])) => 2.0 * a * cosine,
             _ => about,
         };
+        let thickness = thickness.max(LEAST);
         let to_middle = faces.map(|[a, b]| 0.5 * (a - b));
         Self {
             normal,
