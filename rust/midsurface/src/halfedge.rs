@@ -84,6 +84,22 @@ impl Fans {
         }))
     }
 
+    /// Those of some points only; the others have no half-edges.
+    pub fn of_points(triangles: &[[u32; 3]], wanted: &[bool]) -> Self {
+        Self(Buckets::new(wanted.len(), || {
+            let half_edges = (0..3 * triangles.len() as u32).map(|e| (ends(triangles, e).0, e));
+            half_edges.filter(|(p, _)| wanted[*p as usize])
+        }))
+    }
+
+    /// Whether a point of a consistently wound manifold is on the boundary: not every neighbour is
+    /// found both ways around.
+    pub fn is_boundary(&self, triangles: &[[u32; 3]], p: u32) -> bool {
+        let corner = |e: u32| ends(triangles, e).0;
+        let half_edges = || self.of(p).iter().copied();
+        half_edges().any(|e| half_edges().all(|f| corner(previous(f)) != corner(next(e))))
+    }
+
     /// The half-edges that leave a point.
     pub fn of(&self, p: u32) -> &[u32] {
         self.0.of(p as usize)

@@ -20,14 +20,11 @@ const TURNED: f64 = 0.3;
 /// Draws the short edges of a consistently wound 2-manifold together.
 pub(crate) fn weld(surface: &mut Surface) -> Result<()> {
     for _ in 0..ROUNDS {
-        let fans = Fans::new(&surface.triangles, surface.points.len());
-        let twins = fans.twins(&surface.triangles);
-        let mut border: Vec<bool> = zeros(surface.points.len())?;
-        for e in (0..twins.len() as u32).filter(|&e| twins[e as usize] == NONE) {
-            let (a, b) = ends(&surface.triangles, e);
-            (border[a as usize], border[b as usize]) = (true, true);
+        let short = short_edges(surface);
+        if short.is_empty() {
+            break;
         }
-        let pairs = pairs(surface, &fans, &twins, &border)?;
+        let pairs = pairs(surface, &fans_near(surface, &short)?, short)?;
         if pairs.is_empty() {
             break;
         }
@@ -47,38 +44,54 @@ pub(crate) fn weld(surface: &mut Surface) -> Result<()> {
     Ok(())
 }
 
-/// Points to be drawn into others and where to, none of them near another's triangles.
-fn pairs(
-    surface: &Surface,
-    fans: &Fans,
-    twins: &[u32],
-    border: &[bool],
-) -> Result<Vec<(u32, u32, Vec3)>> {
-    let mut short: Vec<(f64, u32)> = Vec::new();
-    for e in 0..twins.len() as u32 {
-        let twin = twins[e as usize];
+/// The half-edges of short edges, the shortest first.
+fn short_edges(surface: &Surface) -> Vec<u32> {
+    let squared = |e: u32| {
         let (a, b) = ends(&surface.triangles, e);
-        let squared = squared_distance(surface.points[a as usize], surface.points[b as usize]);
-        if squared < SHORT * SHORT && (twin == NONE || e < twin) {
-            short.push((squared, e));
+        squared_distance(surface.points[a as usize], surface.points[b as usize])
+    };
+    let all = (0..3 * surface.triangles.len() as u32).map(|e| (squared(e), e));
+    let mut short: Vec<(f64, u32)> = all.filter(|(d, _)| *d < SHORT * SHORT).collect();
+    short.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    short.into_iter().map(|(_, e)| e).collect()
+}
+
+/// The fans of the ends of short edges, which are few, and of the points next to them; other points
+/// have none.
+fn fans_near(surface: &Surface, short: &[u32]) -> Result<Fans> {
+    let triangles = &surface.triangles;
+    let mut is_end: Vec<bool> = zeros(surface.points.len())?;
+    for &e in short {
+        let (a, b) = ends(triangles, e);
+        (is_end[a as usize], is_end[b as usize]) = (true, true);
+    }
+    let mut near = is_end.clone();
+    for t in triangles {
+        if t.iter().any(|&p| is_end[p as usize]) {
+            t.iter().for_each(|&p| near[p as usize] = true);
         }
     }
-    short.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    Ok(Fans::of_points(triangles, &near))
+}
+
+/// Points to be drawn into others and where to, none of them near another's triangles.
+fn pairs(surface: &Surface, fans: &Fans, short: Vec<u32>) -> Result<Vec<(u32, u32, Vec3)>> {
     let mut taken: Vec<bool> = zeros(surface.points.len())?;
     let mut pairs = Vec::new();
-    for (_, e) in short {
+    for e in short {
         let (a, b) = ends(&surface.triangles, e);
         let around = || {
             let triangles = fans.of(a).iter().chain(fans.of(b));
             triangles.flat_map(|&f| surface.triangles[f as usize / 3])
         };
-        if around().any(|p| taken[p as usize]) || !keeps_topology(surface, fans, twins, border, e) {
+        if around().any(|p| taken[p as usize]) || !keeps_topology(surface, fans, e) {
             continue;
         }
         // A point of the boundary stays on it.
-        let (from, to) = if border[b as usize] { (a, b) } else { (b, a) };
+        let on_boundary = [a, b].map(|p| fans.is_boundary(&surface.triangles, p));
+        let (from, to) = if on_boundary[1] { (a, b) } else { (b, a) };
         let [p, q] = [from, to].map(|p| surface.points[p as usize]);
-        let place = match border[from as usize] == border[to as usize] {
+        let place = match on_boundary[0] == on_boundary[1] {
             true => along(p, 0.5, sub(q, p)),
             false => q,
         };
@@ -91,19 +104,21 @@ fn pairs(
 }
 
 /// Whether the surface's topology allows the edge of e to be drawn together.
-fn keeps_topology(surface: &Surface, fans: &Fans, twins: &[u32], border: &[bool], e: u32) -> bool {
-    let (a, b) = ends(&surface.triangles, e);
-    let sides = [e, twins[e as usize]];
+fn keeps_topology(surface: &Surface, fans: &Fans, e: u32) -> bool {
+    let triangles = &surface.triangles;
+    let (a, b) = ends(triangles, e);
+    let sides = [e, fans.twin(triangles, e)];
     let sides = || sides.into_iter().filter(|&f| f != NONE);
-    if sides().count() == 2 && border[a as usize] && border[b as usize] {
+    let is_boundary = |p: u32| fans.is_boundary(triangles, p);
+    if sides().count() == 2 && is_boundary(a) && is_boundary(b) {
         return false;
     }
-    let opposite = |f: u32| ends(&surface.triangles, next(f)).1;
-    let enough = |c: u32| fans.of(c).len() > if border[c as usize] { 1 } else { 3 };
+    let opposite = |f: u32| ends(triangles, next(f)).1;
+    let enough = |c: u32| fans.of(c).len() > if is_boundary(c) { 1 } else { 3 };
     let neighbours = |p: u32| {
         let corners = fans.of(p).iter();
         let mut all: Vec<u32> = corners
-            .flat_map(|&f| surface.triangles[f as usize / 3])
+            .flat_map(|&f| triangles[f as usize / 3])
             .filter(|&q| q != p)
             .collect();
         all.sort_unstable();
