@@ -14,7 +14,7 @@ use crate::grid::{along, dot, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::Surface;
-use crate::normals::{average_normals, normals, NORMAL_PASSES};
+use crate::normals::{average_normals, normal_of_fan};
 use crate::thickness::View;
 
 /// Sheet fraction below which the faces seen may be a rim's.
@@ -27,9 +27,11 @@ const STEEP: f64 = 0.5;
 const BEFORE: f64 = 4.0;
 const ACROSS: f64 = 0.5;
 /// Times that points are moved, with normals of their own each time: the rounds of averaging over
-/// neighbouring points, whose number is the variance in about two squared edges of the contour, and
-/// by how much a point may be off, work units. What is seen gets surer with each.
-const MOVES: [(usize, f64); 4] = [(12, 2.0), (9, 1.0), (7, 0.8), (6, 0.7)];
+/// neighbouring points, whose number is the variance in about two squared edges of the contour; by
+/// how much a point may be off, work units; and that one in so many points looks for the faces,
+/// since where many are averaged a few say as much. What is seen gets surer with each move.
+const MOVES: [Move; 4] = [(12, 2.0, 4), (9, 1.0, 2), (7, 0.8, 2), (6, 0.7, 1)];
+type Move = (usize, f64, u64);
 /// Rounds of averaging normals: along rough ones neighbours would move apart, and fold the surface.
 const NORMAL_ROUNDS: usize = 6;
 /// Points handed to a worker at a time.
@@ -37,7 +39,7 @@ const PIECE: usize = 1024;
 /// Passes over the points that [`move_midway`] makes, for its progress.
 pub(crate) const PASSES: usize = {
     let rounds = MOVES[0].0 + MOVES[1].0 + MOVES[2].0 + MOVES[3].0;
-    MOVES.len() * (1 + NORMAL_PASSES + NORMAL_ROUNDS) + rounds
+    MOVES.len() * (2 + NORMAL_ROUNDS) + rounds
 };
 
 /// How far off each point is, and how much of that was seen there.
@@ -62,14 +64,8 @@ pub(crate) fn move_midway(
 ) -> Result<()> {
     let fans = Fans::new(&surface.triangles, surface.points.len());
     let neighbours = fans.neighbours(&surface.triangles);
-    for (rounds, most) in MOVES {
-        move_once(
-            label,
-            surface,
-            (&fans, &neighbours),
-            (rounds, most),
-            execution,
-        )?;
+    for step in MOVES {
+        move_once(label, surface, (&fans, &neighbours), step, execution)?;
     }
     Ok(())
 }
@@ -78,40 +74,18 @@ fn move_once(
     label: &Label,
     surface: &mut Surface,
     (fans, neighbours): (&Fans, &Buckets<u32>),
-    (rounds, most): (usize, f64),
+    (rounds, most, one_in): Move,
     execution: &mut Execution,
 ) -> Result<()> {
-    let Label {
-        batch,
-        distance,
-        fraction,
-        h,
-    } = *label;
-    let triangles = &surface.triangles;
-    let rough = normals(&surface.points, triangles, fans, execution)?;
-    let normals = &average_normals(rough, neighbours, NORMAL_ROUNDS, execution)?;
-    let mut seen: Vec<Seen> = zeros(surface.points.len())?;
-    let points = &surface.points;
-    let source = &surface.source;
-    execution.fill(&mut seen, PIECE, |piece, out| {
+    let mut rough: Vec<Vec3> = zeros(surface.points.len())?;
+    execution.fill(&mut rough, PIECE, |piece, out| {
         for (i, out) in out.iter_mut().enumerate() {
-            let p = PIECE * piece + i;
-            if fraction[p] < INSIDE {
-                continue;
-            }
-            let directory = &batch.directories[source[p] as usize];
-            let sampler = Sampler {
-                directory,
-                field: distance,
-                h,
-            };
-            let view = View::new(&sampler, points[p], normals[p]);
-            let middle = view.to_middle.filter(|off| off.abs() <= most);
-            if let Some(off) = middle.filter(|&off| sees_faces(&sampler, points[p], &view, off)) {
-                *out = [off as f32, 1.0];
-            }
+            let leaving = fans.of((PIECE * piece + i) as u32);
+            *out = normal_of_fan(&surface.points, &surface.triangles, leaving);
         }
     })?;
+    let normals = average_normals(rough, neighbours, NORMAL_ROUNDS, execution)?;
+    let mut seen = look(label, surface, &normals, (most, one_in), execution)?;
     let mut averaged: Vec<Seen> = zeros(seen.len())?;
     for _ in 0..rounds {
         execution.fill(&mut averaged, PIECE, |piece, out| {
@@ -121,18 +95,59 @@ fn move_once(
         })?;
         std::mem::swap(&mut averaged, &mut seen);
     }
+    let Label { batch, h, .. } = label;
     let last: Vec3 = std::array::from_fn(|a| {
         batch
             .directories
             .first()
             .map_or(0.0, |d| (d.dimensions[a] as f64 - 1.0) * h[a])
     });
-    for ((p, n), [off, weight]) in surface.points.iter_mut().zip(normals).zip(&seen) {
+    for ((p, n), [off, weight]) in surface.points.iter_mut().zip(&normals).zip(&seen) {
         if *weight > 1e-3 {
             *p = within_volume(*p, *n, f64::from(off / weight), last);
         }
     }
     Ok(())
+}
+
+/// How far off the points are that look: up to `most`, and one in so many.
+fn look(
+    label: &Label,
+    surface: &Surface,
+    normals: &[Vec3],
+    (most, one_in): (f64, u64),
+    execution: &mut Execution,
+) -> Result<Vec<Seen>> {
+    let mut seen: Vec<Seen> = zeros(surface.points.len())?;
+    execution.fill(&mut seen, PIECE, |piece, out| {
+        for (i, out) in out.iter_mut().enumerate() {
+            let p = PIECE * piece + i;
+            let point = surface.points[p];
+            if label.fraction[p] < INSIDE || !looks(point, label.h, one_in) {
+                continue;
+            }
+            let sampler = Sampler {
+                directory: &label.batch.directories[surface.source[p] as usize],
+                field: label.distance,
+                h: label.h,
+            };
+            let view = View::new(&sampler, point, normals[p]);
+            let middle = view.to_middle.filter(|off| off.abs() <= most);
+            if let Some(off) = middle.filter(|&off| sees_faces(&sampler, point, &view, off)) {
+                *out = [off as f32, 1.0];
+            }
+        }
+    })?;
+    Ok(seen)
+}
+
+/// Whether a point is one of those that look, which its voxel alone decides: a multiplicative hash
+/// (Knuth), since anything regular would leave out whole sheets of one direction.
+fn looks(p: Vec3, h: Vec3, one_in: u64) -> bool {
+    let hash = (0..3).fold(0u64, |hash, a| {
+        (hash ^ (p[a] / h[a]) as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    });
+    (hash >> 32) % one_in == 0
 }
 
 /// Whether both rays end at faces of the sheet, not at the wall of its rim: just before a ray meets

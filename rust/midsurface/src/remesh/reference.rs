@@ -11,8 +11,9 @@ use super::patch::Vertex;
 use super::sizing;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, cross, dot, sub, unit, Vec3};
-use crate::halfedge::{ends, previous, Fans, NONE};
+use crate::grid::{along, dot, sub, unit, Vec3};
+use crate::halfedge::{Fans, NONE};
+use crate::normals::normal_of_fan;
 
 /// Items handed to a worker at a time.
 const PIECE: usize = 4096;
@@ -60,7 +61,8 @@ impl<'a> Reference<'a> {
         let mut normals: Vec<[f32; 3]> = zeros(points.len())?;
         execution.fill(&mut normals, PIECE, |piece, out| {
             for (i, normal) in out.iter_mut().enumerate() {
-                *normal = point_normal(points, triangles, fans.of((piece * PIECE + i) as u32));
+                let leaving = fans.of((piece * PIECE + i) as u32);
+                *normal = normal_of_fan(points, triangles, leaving).map(|v| v as f32);
             }
         })?;
         let curve = Curve::new(points, triangles, &twins);
@@ -220,20 +222,4 @@ fn nearest(corners: [Vec3; 3], p: Vec3, foot: Vec3) -> (Vec3, Option<usize>) {
         }
     }
     best
-}
-
-/// Unit normal of a point, its triangles weighted so that on a sphere it is exact (Max 1999).
-fn point_normal(points: &[Vec3], triangles: &[[u32; 3]], leaving: &[u32]) -> [f32; 3] {
-    let mut sum = [0.0; 3];
-    for &e in leaving {
-        let (p, q) = ends(triangles, e);
-        let r = ends(triangles, previous(e)).0;
-        let [p, q, r] = [p, q, r].map(|p| points[p as usize]);
-        let (u, v) = (sub(q, p), sub(r, p));
-        let squares = dot(u, u) * dot(v, v);
-        if squares > 0.0 {
-            sum = along(sum, 1.0 / squares, cross(u, v));
-        }
-    }
-    unit(sum).map(|v| v as f32)
 }
