@@ -19,6 +19,8 @@ use crate::thickness::View;
 
 /// Sheet fraction below which the faces seen may be a rim's.
 const INSIDE: f64 = 0.7;
+/// Below this sheet fraction a rim is near, with few points to average over.
+const WHOLE: f64 = 0.95;
 /// Where the border of the volume holds more than this share of a step along the normal back, what
 /// is left would be a long way along the border: the point stays.
 const STEEP: f64 = 0.5;
@@ -31,7 +33,7 @@ const ACROSS: f64 = 0.5;
 /// how much a point may be off, work units; and that one in so many points looks for the faces,
 /// since where many are averaged a few say as much. What is seen gets surer with each move.
 const MOVES: [Move; 4] = [(12, 2.0, 4), (9, 1.0, 2), (7, 0.8, 2), (6, 0.7, 1)];
-type Move = (usize, f64, u64);
+type Move = (usize, f64, u8);
 /// Rounds of averaging normals: along rough ones neighbours would move apart, and fold the surface.
 const NORMAL_ROUNDS: usize = 6;
 /// Points handed to a worker at a time.
@@ -110,12 +112,12 @@ fn move_once(
     Ok(())
 }
 
-/// How far off the points are that look: up to `most`, and one in so many.
+/// How far off the points are that look: up to `most`, and one in so many where no rim is near.
 fn look(
     label: &Label,
     surface: &Surface,
     normals: &[Vec3],
-    (most, one_in): (f64, u64),
+    (most, one_in): (f64, u8),
     execution: &mut Execution,
 ) -> Result<Vec<Seen>> {
     let mut seen: Vec<Seen> = zeros(surface.points.len())?;
@@ -123,7 +125,10 @@ fn look(
         for (i, out) in out.iter_mut().enumerate() {
             let p = PIECE * piece + i;
             let point = surface.points[p];
-            if label.fraction[p] < INSIDE || !looks(point, label.h, one_in) {
+            let fraction = label.fraction[p];
+            // One that looks in place of others counts for them too.
+            let stands_for = if fraction < WHOLE { 1 } else { one_in };
+            if fraction < INSIDE || !is_one_in(stands_for, point, label.h) {
                 continue;
             }
             let sampler = Sampler {
@@ -134,20 +139,21 @@ fn look(
             let view = View::new(&sampler, point, normals[p]);
             let middle = view.to_middle.filter(|off| off.abs() <= most);
             if let Some(off) = middle.filter(|&off| sees_faces(&sampler, point, &view, off)) {
-                *out = [off as f32, 1.0];
+                let weight = f32::from(stands_for);
+                *out = [weight * off as f32, weight];
             }
         }
     })?;
     Ok(seen)
 }
 
-/// Whether a point is one of those that look, which its voxel alone decides: a multiplicative hash
-/// (Knuth), since anything regular would leave out whole sheets of one direction.
-fn looks(p: Vec3, h: Vec3, one_in: u64) -> bool {
+/// Whether a point is one in so many, which its voxel alone decides: by a multiplicative hash (Knuth),
+/// since anything regular would leave out whole sheets of one direction.
+fn is_one_in(one_in: u8, p: Vec3, h: Vec3) -> bool {
     let hash = (0..3).fold(0u64, |hash, a| {
         (hash ^ (p[a] / h[a]) as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
     });
-    (hash >> 32) % one_in == 0
+    (hash >> 32) % u64::from(one_in) == 0
 }
 
 /// Whether both rays end at faces of the sheet, not at the wall of its rim: just before a ray meets
