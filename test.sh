@@ -21,7 +21,8 @@ build_all
 
 say "Rust: lints and documentation"
 if cargo clippy --version >/dev/null 2>&1; then
-  cargo clippy --locked --workspace --all-targets --release -- -D warnings
+  cargo clippy --locked --workspace --all-targets --release \
+    --features midsurface-capi/inject-panics -- -D warnings
 else
   echo "clippy is not installed: its lints are skipped"
 fi
@@ -29,6 +30,8 @@ RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --release
 
 say "Rust: tests"
 cargo test --locked --workspace --release
+say "Rust: panics in every stage"
+cargo test --locked --release -p midsurface-capi --features inject-panics --lib
 say "Rust: sanitizers and fuzz targets"
 tests/sanitizers.sh
 say "Rust: the crates and the oldest version"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The core's unit tests and the fuzz targets under AddressSanitizer, for a bounded time.
+# The core's unit tests, panics in every stage and the fuzz targets under AddressSanitizer, for a
+# bounded time.
 #
 #     sanitizers.sh [SECONDS]
 #
@@ -24,6 +25,10 @@ export LSAN_OPTIONS=suppressions=$PWD/fuzz/leaks.txt:print_suppressions=0
 echo "-- The core's unit tests"
 RUSTFLAGS="-Zsanitizer=address" cargo test --locked --quiet --release --target "$target" \
   -p midsurface --lib
+
+echo "-- Panics in every stage"
+RUSTFLAGS="-Zsanitizer=address" cargo test --locked --quiet --release --target "$target" \
+  -p midsurface-capi --features inject-panics --lib
 
 echo "-- Fuzz targets, $seconds s each"
 coverage="-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4

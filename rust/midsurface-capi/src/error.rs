@@ -94,8 +94,10 @@ pub(crate) fn guarded_value<T>(fallback: T, body: impl FnOnce() -> T) -> T {
 fn caught<T>(body: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(body)).map_err(|payload| {
         let message = format!("internal error: {}", panic_message(payload.as_ref()));
-        // The payload's own drop could panic once more, outside the guard.
-        std::mem::forget(payload);
+        // A payload other than a text could panic once more when it is dropped, outside the guard.
+        if !payload.is::<&str>() && !payload.is::<String>() {
+            std::mem::forget(payload);
+        }
         message
     })
 }

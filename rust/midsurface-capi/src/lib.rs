@@ -17,6 +17,8 @@ mod options;
 mod polyline_arrays;
 mod polylines;
 mod ridge_field;
+#[cfg(all(test, feature = "inject-panics"))]
+mod stages_panic;
 mod statistics;
 mod volume;
 

@@ -7,6 +7,8 @@ use rayon::prelude::*;
 use rayon::ThreadPool;
 
 use crate::error::{reserved, Error, Result};
+#[cfg(feature = "inject-panics")]
+use crate::injected_panics::visit;
 
 /// What the caller of a run is told. Called on the calling thread only.
 pub trait Observer {
@@ -31,6 +33,10 @@ impl Observer for Quiet {
         self.warnings.push(message.to_owned());
     }
 }
+
+/// Where the tests of panics step in.
+#[cfg(not(feature = "inject-panics"))]
+fn visit(_place: (&'static str, usize)) {}
 
 /// How long a batch should take, seconds: short enough to report and to cancel between them.
 const BATCH_SECONDS: f64 = 0.05;
@@ -109,6 +115,7 @@ impl<'a> Execution<'a> {
 
     /// Reports a pass that was made on the calling thread.
     pub fn pass_done(&mut self) -> Result<()> {
+        visit(self.place());
         self.report(1.0)?;
         self.passes_done += 1;
         Ok(())
@@ -119,6 +126,11 @@ impl<'a> Execution<'a> {
         self.observer.warning(message);
     }
 
+    /// Stage and pass.
+    fn place(&self) -> (&'static str, usize) {
+        (self.stage, self.passes_done)
+    }
+
     /// Hands `f` of every item, in the items' order, to `keep` on the calling thread.
     pub fn stream<T: Sync, R: Send>(
         &mut self,
@@ -126,6 +138,11 @@ impl<'a> Execution<'a> {
         f: impl Fn(&T) -> R + Sync,
         mut keep: impl FnMut(R) -> Result<()>,
     ) -> Result<()> {
+        let place = self.place();
+        let f = |item| {
+            visit(place);
+            f(item)
+        };
         self.batches(items.len(), |pool, range| {
             let batch: Vec<R> = pool.install(|| items[range].par_iter().map(&f).collect());
             batch.into_iter().try_for_each(&mut keep)
@@ -139,6 +156,11 @@ impl<'a> Execution<'a> {
         f: impl Fn(usize) -> T + Sync,
     ) -> Result<Vec<T>> {
         let mut items = reserved(count)?;
+        let place = self.place();
+        let f = |index| {
+            visit(place);
+            f(index)
+        };
         self.batches(count, |pool, range| {
             pool.install(|| items.par_extend(range.into_par_iter().map(&f)));
             Ok(())
@@ -154,6 +176,7 @@ impl<'a> Execution<'a> {
         f: impl Fn(usize, &mut [T]) + Sync,
     ) -> Result<()> {
         let pieces = buffer.len().div_ceil(size);
+        let place = self.place();
         self.batches(pieces, |pool, range| {
             let end = (range.end * size).min(buffer.len());
             let batch = &mut buffer[range.start * size..end];
@@ -161,7 +184,10 @@ impl<'a> Execution<'a> {
                 batch
                     .par_chunks_mut(size)
                     .enumerate()
-                    .for_each(|(i, piece)| f(range.start + i, piece))
+                    .for_each(|(i, piece)| {
+                        visit(place);
+                        f(range.start + i, piece)
+                    })
             });
             Ok(())
         })

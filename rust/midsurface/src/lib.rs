@@ -56,6 +56,8 @@ mod extension;
 mod flips;
 mod grid;
 mod halfedge;
+#[cfg(feature = "inject-panics")]
+pub mod injected_panics;
 mod interpolation;
 mod manifold;
 mod mesh;
