@@ -31,7 +31,7 @@ RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --release
 say "Rust: tests"
 cargo test --locked --workspace --release
 say "Rust: panics in every stage"
-cargo test --locked --release -p midsurface-capi --features inject-panics --lib
+cargo test --locked --release -p midsurface-capi --features inject-panics --lib stages_panic
 say "Rust: sanitizers and fuzz targets"
 tests/sanitizers.sh
 say "Rust: the crates and the oldest version"

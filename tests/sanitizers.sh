@@ -28,7 +28,7 @@ RUSTFLAGS="-Zsanitizer=address" cargo test --locked --quiet --release --target "
 
 echo "-- Panics in every stage"
 RUSTFLAGS="-Zsanitizer=address" cargo test --locked --quiet --release --target "$target" \
-  -p midsurface-capi --features inject-panics --lib
+  -p midsurface-capi --features inject-panics --lib stages_panic
 
 echo "-- Fuzz targets, $seconds s each"
 coverage="-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4

@@ -94,9 +94,9 @@ pub(crate) fn guarded_value<T>(fallback: T, body: impl FnOnce() -> T) -> T {
 fn caught<T>(body: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(body)).map_err(|payload| {
         let message = format!("internal error: {}", panic_message(payload.as_ref()));
-        // A payload other than a text could panic once more when it is dropped, outside the guard.
-        if !payload.is::<&str>() && !payload.is::<String>() {
-            std::mem::forget(payload);
+        // The payload's own drop could panic once more; that panic's payload is not tried again.
+        if let Err(another) = catch_unwind(AssertUnwindSafe(|| drop(payload))) {
+            std::mem::forget(another);
         }
         message
     })

@@ -1,8 +1,8 @@
 //! A panic in any stage, in a worker or on the calling thread, becomes an error with its message,
 //! and the next run gives what the first one gave.
 //!
-//! `cargo test -p midsurface-capi --features inject-panics --lib`; under AddressSanitizer, as
-//! `tests/sanitizers.sh` runs it, nothing may leak either.
+//! `cargo test -p midsurface-capi --features inject-panics --lib stages_panic`; under
+//! AddressSanitizer, as `tests/sanitizers.sh` runs it, nothing may leak either.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::CStr;
