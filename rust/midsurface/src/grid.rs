@@ -106,12 +106,28 @@ impl Grid {
         self.direction.map(|row| dot(row, v))
     }
 
+    /// World coordinates of the voxels at the volume's corners.
+    pub(crate) fn corners(&self) -> [Vec3; 8] {
+        std::array::from_fn(|corner| {
+            self.world(std::array::from_fn(|axis| {
+                let last = self.dimensions[axis] as f64 - 1.0;
+                last * (corner >> axis & 1) as f64
+            }))
+        })
+    }
+
     /// World coordinates of a point given as a continuous voxel index.
     pub fn world(&self, voxel: Vec3) -> Vec3 {
         let local: Vec3 =
             std::array::from_fn(|a| self.spacing[a] * (self.extent_start[a] as f64 + voxel[a]));
         std::array::from_fn(|r| self.origin[r] + dot(self.direction[r], local))
     }
+}
+
+/// The largest coordinate of all points, whichever its sign.
+pub(crate) fn farthest(points: &[Vec3]) -> f64 {
+    let coordinates = points.iter().flatten();
+    coordinates.fold(0.0, |far, v| far.max(v.abs()))
 }
 
 /// ⌊v⌋ by a cast: on processors without an instruction for it `f64::floor` is a call.

@@ -280,7 +280,7 @@ fn find_ridge_surface(
         return Ok(mesh);
     }
     let mut without: BTreeMap<i64, usize> = BTreeMap::new();
-    for_each_batch(volume, options, execution, 1.0, |parts, execution| {
+    let count = for_each_batch(volume, options, execution, 1.0, |parts, execution| {
         let first = mesh.triangles.len();
         ridge_surface::ridge_surface(
             parts,
@@ -298,7 +298,10 @@ fn find_ridge_surface(
         Ok(())
     })?;
     warn_of_components_without(&without, execution);
-    warn_if_far(&mesh, execution);
+    if count > 0 {
+        let grid = &volume.grid;
+        warn_if_far(grid::farthest(&grid.corners()), grid.unit(), execution);
+    }
     execution.finish()?;
     Ok(mesh)
 }
@@ -323,30 +326,25 @@ fn zip(polylines: &Polylines, execution: &mut Execution) -> Result<Mesh> {
     execution.stage("Zipping polylines", 0.0, 0.6, zipper::PASSES)?;
     let triangles = zipper::zip(polylines, execution)?;
     execution.stage("Making the mesh", 0.6, 1.0, mesh::PASSES)?;
-    let mesh = Mesh::assemble(polylines, triangles, execution)?;
-    if mesh.triangles.is_empty() && !polylines.lines.is_empty() {
+    if let Some(([a, b, _], _)) = triangles.first() {
+        let [a, b] = [a, b].map(|&p| polylines.points[p as usize]);
+        let edge = grid::length(grid::sub(a, b));
+        warn_if_far(grid::farthest(&polylines.points), edge, execution);
+    } else if !polylines.lines.is_empty() {
         execution.warning(
             "there is no surface: it takes lines in two neighbouring slices, and this input has \
              them in single slices only",
         );
     }
-    warn_if_far(&mesh, execution);
+    let mesh = Mesh::assemble(polylines, triangles, execution)?;
     execution.finish()?;
     Ok(mesh)
 }
 
-/// Warns where the points' 32-bit coordinates are too coarse for the mesh: far from the origin.
-fn warn_if_far(mesh: &Mesh, execution: &mut Execution) {
-    let Some(triangle) = mesh.triangles.first() else {
-        return;
-    };
-    let [a, b, _] = triangle.map(|p| mesh.points[p as usize].map(f64::from));
-    let farthest = mesh
-        .points
-        .iter()
-        .flatten()
-        .fold(0.0f32, |far, v| far.max(v.abs()));
-    if f64::from(farthest * f32::EPSILON) > 0.01 * grid::length(grid::sub(a, b)) {
+/// Warns where the points' 32-bit coordinates, the largest being `farthest`, are too coarse for
+/// edges of this length, world units.
+fn warn_if_far(farthest: f64, edge: f64, execution: &mut Execution) {
+    if farthest * f64::from(f32::EPSILON) > 0.01 * edge {
         execution.warning(
             "the volume lies so far from the origin that the points' 32-bit coordinates are \
              rounded visibly: move its origin nearer to 0",

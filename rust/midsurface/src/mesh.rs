@@ -99,6 +99,13 @@ impl Mesh {
             terraces::PASSBAND,
             execution,
         )?;
+        let count = surface.triangles.len();
+        drop_degenerate(&mut surface, |p| p.map(|v| v as f32));
+        let fans = if surface.triangles.len() == count {
+            fans
+        } else {
+            Fans::new(&surface.triangles, surface.points.len())
+        };
         let line_of = line_of_points(polylines);
         let line = |t: &[u32; 3]| &polylines.lines[line_of[surface.source[t[0] as usize] as usize]];
         let mut mesh = Self {
@@ -219,13 +226,32 @@ impl Mesh {
 }
 
 /// Whether a triangle has no area to speak of.
-pub(crate) fn is_degenerate(corners: [[f32; 3]; 3]) -> bool {
+fn is_degenerate(corners: [[f32; 3]; 3]) -> bool {
     let [a, b, c] = corners.map(|p| p.map(f64::from));
     let area = length(cross(sub(b, a), sub(c, a)));
     let longest = length(sub(b, a))
         .max(length(sub(c, b)))
         .max(length(sub(a, c)));
     area.is_nan() || area <= 1e-9 * longest * longest
+}
+
+/// Rounds of dropping triangles without area.
+const MENDINGS: usize = 4;
+
+/// Drops triangles that have no area in the mesh's own precision; `rounded` is what becomes of a
+/// point. Far from the origin it may be all of them.
+pub(crate) fn drop_degenerate(surface: &mut Surface, rounded: impl Fn(Vec3) -> [f32; 3]) {
+    for _ in 0..MENDINGS {
+        let count = surface.triangles.len();
+        let corner = |p: u32| rounded(surface.points[p as usize]);
+        surface
+            .triangles
+            .retain(|triangle| !is_degenerate(triangle.map(corner)));
+        if surface.triangles.len() == count {
+            break;
+        }
+        make_manifold(surface);
+    }
 }
 
 /// The line each point of the polylines is on.

@@ -20,7 +20,7 @@ use crate::grid::{Grid, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::{make_manifold, Surface};
-use crate::mesh::{is_degenerate, turn_outward, Mesh};
+use crate::mesh::{drop_degenerate, turn_outward, Mesh};
 use crate::midway::{self, move_midway, Label};
 use crate::normals::{normals, NORMAL_PASSES};
 use crate::profile::Profile;
@@ -46,8 +46,6 @@ const RINGS: u8 = 12;
 /// End of the passband of the low-pass that flattens terraces: shorter waves than for lines, since
 /// midway points have fewer terraces, and thick membranes have bends of their own.
 const PASSBAND: f64 = 0.12;
-/// Rounds of dropping triangles without area.
-const MENDINGS: usize = 4;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 
@@ -128,27 +126,16 @@ fn flatten(surface: &mut Surface, edge: f64, execution: &mut Execution) -> Resul
 }
 
 /// Puts points that the remesher moved beyond the border of the volume back onto it, and drops
-/// triangles that have no area in the mesh's own precision: they are left where two rims meet.
+/// triangles without area: they are left where two rims meet.
 fn sound(mut surface: Surface, grid: &Grid) -> Result<Surface> {
     let h = grid.work_spacing();
     for p in &mut surface.points {
         *p = std::array::from_fn(|a| p[a].clamp(0.0, (grid.dimensions[a] as f64 - 1.0) * h[a]));
     }
-    for _ in 0..MENDINGS {
-        let count = surface.triangles.len();
-        let points = &surface.points;
-        surface.triangles.retain(|t| {
-            let world = |p: u32| {
-                let voxel = std::array::from_fn(|a| points[p as usize][a] / h[a]);
-                grid.world(voxel).map(|v| v as f32)
-            };
-            !is_degenerate(t.map(world))
-        });
-        if surface.triangles.len() == count {
-            break;
-        }
-        make_manifold(&mut surface);
-    }
+    drop_degenerate(&mut surface, |p| {
+        let voxel = std::array::from_fn(|a| p[a] / h[a]);
+        grid.world(voxel).map(|v| v as f32)
+    });
     surface.compact()
 }
 

@@ -1,6 +1,6 @@
 //! Spacing, origin, extent, direction and units: the mesh lies where the voxels lie.
 
-use midsurface::{Grid, Mesh};
+use midsurface::{extract, Grid, Mesh, Method, Options, Quiet, Volume};
 use phantoms::*;
 
 use crate::measure::{assert_all_match, complete_within, extract_all, grid, mesh_of, Limits};
@@ -169,4 +169,26 @@ fn anisotropic_voxels_are_accurate() {
             covered: 0.99,
         },
     );
+}
+
+/// From a few voxels' worth of rounding up to where no two points differ.
+#[test]
+fn far_from_the_origin_the_mesh_is_sound_and_a_warning_says_so() {
+    let phantom = noisy_sheet();
+    for far in [1e6, 3e6, 1e7, 3e7, 1e9, 1e15] {
+        for method in [Method::RidgeSurface, Method::PolylineZipper] {
+            let mut grid = grid(&phantom.frame);
+            grid.origin = [far, -far, 0.3 * far];
+            let volume = Volume::new(&phantom.labels, grid).expect("a sound volume");
+            let options = Options {
+                method,
+                ..Options::default()
+            };
+            let mut observer = Quiet::default();
+            let mesh = extract(&volume, &options, &mut observer).expect("a mesh");
+            assert_eq!(mesh.check_invariants(), Ok(()), "{far} {method:?}");
+            let is_told = |text: &String| text.contains("so far from the origin");
+            assert!(observer.warnings.iter().any(is_told), "{far} {method:?}");
+        }
+    }
 }
