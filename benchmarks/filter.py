@@ -8,7 +8,7 @@ Fig11-IMM.vti. Each volume has a process of its own, so that its memory is its o
 Both methods are measured. Seconds: wall time of the filter alone, its input already read, the
 median of three runs, each with a new filter. Contour: ParaView's own filter at 0.5, measured in the
 same way. Memory: the peak beyond what the process held before the first run, so beyond ParaView and
-the input.
+the input. A second table says what share of its time each stage takes, by the filter's own progress.
 """
 import json
 import os
@@ -77,6 +77,26 @@ def timed(make, keep):
     return statistics.median(seconds), kept, peak
 
 
+def stages(proxy):
+    """Seconds of each stage of a filter's update, in the order of their first texts."""
+    spent, now = {}, ["", time.perf_counter()]
+
+    def turn(text):
+        stage, since = now
+        now[:] = text, time.perf_counter()
+        spent[stage] = spent.get(stage, 0) + now[1] - since
+
+    vtk_filter = proxy.GetClientSideObject()
+    observer = vtk_filter.AddObserver(
+        "ProgressEvent", lambda *_: turn(vtk_filter.GetProgressText() or "")
+    )
+    proxy.UpdatePipeline()
+    vtk_filter.RemoveObserver(observer)
+    turn("")
+    spent.pop("")
+    return spent
+
+
 def figures(mesh):
     """Points, triangles, mean quality, mean smallest angle in degrees, and the share in per cent of
     the interior points that have five, six or seven edges."""
@@ -119,11 +139,14 @@ def measure(plugin, path, method):
         lambda: simple.MidSurface(Input=reader, Method=method), figures
     )
 
+    stages_of_run = stages(simple.MidSurface(Input=reader, Method=method))
+
     def contour():
         return simple.Contour(Input=reader, ContourBy=["POINTS", array], Isosurfaces=[0.5])
 
     contour_seconds, _, _ = timed(contour, lambda mesh: None)
-    print(json.dumps({"seconds": seconds, "peak": peak, "contour": contour_seconds, **result}))
+    measured = {"seconds": seconds, "peak": peak, "contour": contour_seconds}
+    print(json.dumps({**measured, "stages": stages_of_run, **result}))
 
 
 def measure_apart(plugin, path, method):
@@ -145,8 +168,20 @@ TITLES = ("volume", "from", "seconds", "MB", "points", "triangles", "Q", "angle"
 WIDTHS = (9, 21, 8, 6, 8, 9, 5, 5, 6, 9)
 
 
-def print_row(*cells):
-    print("| " + " | ".join(f"{cell:>{width}}" for cell, width in zip(cells, WIDTHS)) + " |", flush=True)
+def print_row(*cells, widths=WIDTHS):
+    print("| " + " | ".join(f"{cell:>{width}}" for cell, width in zip(cells, widths)) + " |", flush=True)
+
+
+def print_stages(method, stages_of):
+    """A table of the stages' shares in per cent, a column a volume."""
+    widths = (22, *(9 for _ in stages_of))
+    print(f"\n{method}: share of the time in each stage, %\n")
+    print_row("stage", *stages_of, widths=widths)
+    print_row(*("-" * width for width in widths), widths=widths)
+    names = {name: None for stages in stages_of.values() for name in stages}
+    for name in names:
+        shares = [100 * s.get(name, 0) / sum(s.values()) for s in stages_of.values()]
+        print_row(name, *(f"{share:.0f}" for share in shares), widths=widths)
 
 
 def main():
@@ -159,6 +194,7 @@ def main():
     print(f"{date.today()}, {processor()}; load before: {load}\n")
     print_row(*TITLES)
     print_row(*("-" * width for width in WIDTHS))
+    stages_of = {method: {} for method in METHODS}
     for name in sys.argv[3:] or PAPER:
         path = os.path.join(folder, name + ".vti")
         if not os.path.exists(path):
@@ -166,6 +202,7 @@ def main():
             continue
         for method in METHODS:
             m = measure_apart(plugin, path, method)
+            stages_of[method][name] = m["stages"]
             print_row(
                 name, method, f"{m['seconds']:.2f}", f"{m['peak']:.0f}", m["points"], m["triangles"],
                 f"{m['quality']:.3f}", f"{m['angle']:.1f}", f"{m['valence']:.2f}", f"{m['contour']:.2f}",
@@ -182,6 +219,8 @@ def main():
         "\nthe interior points with 5 to 7 edges (* of all points). paper: arXiv 2405.19339, its table,"
         "\nseconds for lines and mesh on its machine. its plugin, measured: on 2 cores under load."
     )
+    for method in METHODS:
+        print_stages(method, stages_of[method])
 
 
 main()

@@ -69,7 +69,7 @@ pub(crate) fn ridge_surface(
     let distance = distance::distance(batch, h, execution)?;
     let sheets = find_sheets(batch, &distance, h, execution)?;
     let (mut surface, fraction) = cut_surface(batch, sheets, &distance, h, execution)?;
-    execution.stage("Moving midway", 0.56, 0.69, 1 + midway::PASSES)?;
+    execution.stage("Moving midway", 0.49, 0.65, 1 + midway::PASSES)?;
     let fraction = values(batch, &surface, &fraction, h, execution)?;
     let label = Label {
         batch,
@@ -79,7 +79,7 @@ pub(crate) fn ridge_surface(
     };
     move_midway(&label, &mut surface, execution)?;
     turn_outward(&surface.points, &mut surface.triangles);
-    execution.stage("Remeshing", 0.69, 0.94, 1)?;
+    execution.stage("Remeshing", 0.65, 0.94, 1)?;
     let wanted = match edge_length {
         0.0 => EDGE_LENGTH,
         length => length / grid.unit(),
@@ -147,20 +147,20 @@ fn find_sheets(
     execution: &mut Execution,
 ) -> Result<Vec<Sheet>> {
     let half_thickness = HalfThickness::new(batch, distance, execution)?;
-    execution.stage("Smoothing labels", 0.01, 0.05, 1)?;
+    execution.stage("Smoothing labels", 0.01, 0.04, 1)?;
     let profile = Profile::new(batch, distance, half_thickness, h, execution)?;
-    execution.stage("Finding sheets", 0.05, 0.27, crest::PASSES)?;
+    execution.stage("Finding sheets", 0.04, 0.21, crest::PASSES)?;
     let farthest = (FARTHEST * h.iter().copied().fold(1.0, f64::max)) as f32;
     let mut sheets = core_sheets(batch, &profile, distance, farthest, h, execution)?;
     drop(profile);
     execution.stage(
         "Extending sheets",
-        0.27,
-        0.38,
+        0.21,
+        0.28,
         bending::PASSES + 1 + usize::from(RINGS),
     )?;
     extend(batch, distance, RINGS, farthest, h, &mut sheets, execution)?;
-    execution.stage("Settling sheets", 0.38, 0.47, SETTLINGS)?;
+    execution.stage("Settling sheets", 0.28, 0.37, SETTLINGS)?;
     for _ in 0..SETTLINGS {
         settle(batch, &mut sheets, h, execution)?;
     }
@@ -176,11 +176,11 @@ fn cut_surface(
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<(Surface, Vec<f32>)> {
-    execution.stage("Joining sheets", 0.47, 0.54, 1 + contour::PASSES)?;
+    execution.stage("Joining sheets", 0.37, 0.45, 1 + contour::PASSES)?;
     let mut surface = contour::contour(batch, &sheets, h, execution)?;
     make_manifold(&mut surface);
     execution.pass_done()?;
-    execution.stage("Trimming at rims", 0.54, 0.56, 2 + rim::PASSES)?;
+    execution.stage("Trimming at rims", 0.45, 0.49, 2 + rim::PASSES)?;
     let fraction = sheet_fraction(batch, &sheets, distance, h, execution)?;
     drop(sheets);
     let at_points = values(batch, &surface, &fraction, h, execution)?;
