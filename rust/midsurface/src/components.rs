@@ -5,7 +5,7 @@
 //! faces (6 neighbours), since two sheets one voxel apart touch at corners. Sheets of a single
 //! voxel are held together by corners only, so thin parts that touch are one part.
 
-use crate::error::Result;
+use crate::error::{check_count, Result};
 use crate::execution::Execution;
 use crate::runs::Run;
 
@@ -60,6 +60,7 @@ impl DisjointSets {
 
 /// The parts of all labels, ordered by component, and the number of specks left out.
 pub(crate) fn parts(mut runs: Vec<Run>, execution: &mut Execution) -> Result<(Vec<Part>, usize)> {
+    check_count("rows of labelled voxels", runs.len(), 1)?;
     // A stable sort: within a label the order z, y, x stays.
     runs.sort_by_key(|run| run.label);
     let mut parts = Vec::new();

@@ -73,6 +73,16 @@ pub enum Error {
     /// Memory was refused.
     #[error("not enough memory: {0} bytes more were refused")]
     OutOfMemory(usize),
+    /// More than 32 bits can number.
+    #[error("{count} {what} are more than can be worked on at once, {limit}: extract fewer labels at a time, or a part of the volume")]
+    TooMany {
+        /// What there are so many of.
+        what: &'static str,
+        /// How many there would be.
+        count: usize,
+        /// The largest number that is accepted.
+        limit: usize,
+    },
     /// The thread pool could not be made.
     #[error("the worker threads could not be started: {0}")]
     Threads(String),
@@ -99,4 +109,34 @@ pub(crate) fn zeros<T: Clone + Default>(length: usize) -> Result<Vec<T>> {
     // which leaves touching the pages to the workers.
     drop(reserved::<T>(length)?);
     Ok(vec![T::default(); length])
+}
+
+/// Fails where so many things, each with so many parts, cannot be numbered in 32 bits.
+pub(crate) fn check_count(what: &'static str, count: usize, parts: usize) -> Result<()> {
+    // The last number, and that plus one, stand for none.
+    let limit = (u32::MAX as usize - 2) / parts;
+    if count > limit {
+        return Err(Error::TooMany { what, count, limit });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_32_bits_cannot_number_is_refused() {
+        let third = (1usize << 32) / 3;
+        assert_eq!(check_count("triangles", (1 << 31) / 3 + 1, 3), Ok(()));
+        assert_eq!(check_count("triangles", third - 1, 3), Ok(()));
+        let refusal = check_count("triangles", third + 1, 3).expect_err("refused");
+        assert!(
+            refusal.to_string().contains("1431655766 triangles"),
+            "{refusal}"
+        );
+        assert_eq!(check_count("points", (1 << 32) - 3, 1), Ok(()));
+        assert!(check_count("points", (1 << 32) - 2, 1).is_err());
+        assert!(check_count("points", usize::MAX, 1).is_err());
+    }
 }

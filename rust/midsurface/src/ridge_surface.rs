@@ -13,7 +13,7 @@ use crate::components::Part;
 use crate::contour;
 use crate::crest::{self, core_sheets};
 use crate::distance;
-use crate::error::{zeros, Result};
+use crate::error::{check_count, zeros, Result};
 use crate::execution::Execution;
 use crate::extension::extend;
 use crate::grid::{Grid, Vec3};
@@ -178,6 +178,7 @@ fn cut_surface(
 ) -> Result<(Surface, Vec<f32>)> {
     execution.stage("Joining sheets", 0.37, 0.45, 1 + contour::PASSES)?;
     let mut surface = contour::contour(batch, &sheets, h, execution)?;
+    check_count("triangles", surface.triangles.len(), 3)?;
     make_manifold(&mut surface);
     execution.pass_done()?;
     execution.stage("Trimming at rims", 0.45, 0.49, 2 + rim::PASSES)?;
@@ -241,6 +242,10 @@ fn append(
             *out = (view.thickness * grid.unit()) as f32;
         }
     })?;
+    let point_count = mesh.points.len() + found.points.len();
+    let triangle_count = mesh.triangles.len() + found.triangles.len();
+    check_count("points", point_count, 1)?;
+    check_count("triangles", triangle_count, 3)?;
     let first = mesh.points.len() as u32;
     let mirrored = grid.is_mirrored();
     for &[a, b, c] in &found.triangles {

@@ -192,3 +192,36 @@ fn far_from_the_origin_the_mesh_is_sound_and_a_warning_says_so() {
         }
     }
 }
+
+/// The pages of an array of zeros that nobody writes to take no memory.
+#[test]
+fn voxels_beyond_the_two_thousand_millionth_are_found_where_they_are() {
+    let phantom = noisy_sheet();
+    let [nx, ny, nz] = phantom.frame.dimensions;
+    let dimensions = [2048, 2048, 544];
+    let start = [1960, 1976, 512];
+    let mut labels = vec![0u8; dimensions.iter().product()];
+    for row in 0..ny * nz {
+        let [y, z] = [row % ny, row / ny];
+        let at = ((z + start[2]) * dimensions[1] + y + start[1]) * dimensions[0] + start[0];
+        assert!(at > 1 << 31);
+        labels[at..at + nx].copy_from_slice(&phantom.labels[row * nx..][..nx]);
+    }
+    let volume = Volume::new(&labels, Grid::new(dimensions)).expect("a sound volume");
+    for method in [Method::RidgeSurface, Method::PolylineZipper] {
+        let options = Options {
+            method,
+            ..Options::default()
+        };
+        let mesh = extract(&volume, &options, &mut Quiet::default()).expect("a mesh");
+        assert_eq!(mesh.check_invariants(), Ok(()));
+        assert!(mesh.triangles.len() > 500, "{}", mesh.triangles.len());
+        for p in &mesh.points {
+            for axis in 0..3 {
+                let from_start = p[axis] - start[axis] as f32;
+                let end = phantom.frame.dimensions[axis] as f32;
+                assert!(from_start > -1.0 && from_start < end, "{p:?}");
+            }
+        }
+    }
+}
