@@ -4,12 +4,12 @@
 #
 #     sanitizers.sh [SECONDS]
 #
-# SECONDS: how long each fuzz target runs, 40 unless told. What it finds stays in fuzz/artifacts;
+# SECONDS: how long each fuzz target runs, 25 unless told. What it finds stays in fuzz/artifacts;
 # `cargo fuzz run TARGET FILE`, where cargo-fuzz is installed, or the program that this script
 # names, with the file, shows it again. C and C++ run under sanitizers in tests/c.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-seconds=${1:-40}
+seconds=${1:-25}
 target=$(rustc --version --verbose | sed -n 's/^host: //p')
 runtime=$(find "$(rustc --print sysroot)/lib/rustlib/$target" -name 'librustc*_rt.asan.a')
 if [ -z "$runtime" ]; then
@@ -37,12 +37,13 @@ coverage="-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4
 RUSTFLAGS="-Zsanitizer=address --cfg fuzzing -Ccodegen-units=1 $(echo $coverage)" \
   cargo build --locked --quiet --release --target "$target" --manifest-path fuzz/Cargo.toml
 mkdir -p fuzz/artifacts
-for name in volume polylines triangles; do
+for name in volume volume_polylines volume_fields polylines triangles; do
   program=$CARGO_TARGET_DIR/$target/release/$name
   found=$(mktemp -d)
   echo "$program"
-  # The folder named first gets what is new; the kept corpus stays as it is.
-  "$program" "$found" "fuzz/corpus/$name" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=3000 \
+  # The folder named first gets what is new; the kept corpus, which all that take volumes share,
+  # stays as it is.
+  "$program" "$found" "fuzz/corpus/${name%%_*}" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=3000 \
     -max_len=600 -artifact_prefix=fuzz/artifacts/ -print_final_stats=1 >"$found.log" 2>&1 || {
     grep -a -v '^#' "$found.log"
     exit 1

@@ -1,6 +1,6 @@
-/* Volumes of every scalar type, up to 18 voxels along each axis, mostly of runs of few labels:
- * labels, ridge field, both methods, and the polylines joined. Lengths, types, frames and options
- * may be lies. */
+/* Volumes of every scalar type, up to 18 voxels along each axis, mostly of runs of few labels, into
+ * each function that takes one: both methods; labels and ridge field; the polylines, joined.
+ * Lengths, types, frames and options may be lies. */
 #include "bytes.h"
 
 #include <stdlib.h>
@@ -65,8 +65,24 @@ static void take_frame(bytes* input, midsurface_volume* volume)
   volume->scalar_type = flags & 64 ? take_byte(input) : volume->scalar_type;
 }
 
-static void run_polylines(const midsurface_volume* volume, const midsurface_options* options)
+static void run_extract(
+  const midsurface_volume* volume, size_t voxels, const midsurface_options* options)
 {
+  (void)voxels;
+  midsurface_mesh* mesh = NULL;
+  midsurface_error* error = NULL;
+  const midsurface_status status = midsurface_extract(volume, options, &mesh, &error);
+  check_outcome(status, error);
+  if (status == MIDSURFACE_STATUS_OK)
+  {
+    consume_mesh(mesh);
+  }
+}
+
+static void run_polylines(
+  const midsurface_volume* volume, size_t voxels, const midsurface_options* options)
+{
+  (void)voxels;
   midsurface_polylines* polylines = NULL;
   midsurface_mesh* mesh = NULL;
   midsurface_error* error = NULL;
@@ -85,20 +101,37 @@ static void run_polylines(const midsurface_volume* volume, const midsurface_opti
   midsurface_polylines_free(polylines);
 }
 
-static void run_ridge_field(
+static void run_fields(
   const midsurface_volume* volume, size_t voxels, const midsurface_options* options)
 {
+  midsurface_label_list* labels = NULL;
+  midsurface_error* error = NULL;
+  midsurface_status status = midsurface_find_labels(volume, options, &labels, &error);
+  check_outcome(status, error);
+  for (size_t index = 1; index < midsurface_label_list_length(labels); index++)
+  {
+    const int64_t* values = midsurface_label_list_values(labels);
+    require(values[index - 1] < values[index]);
+  }
+  midsurface_label_list_free(labels);
+
   float* distance = buffer_of(voxels, sizeof *distance);
   float* ridge = buffer_of(voxels, sizeof *ridge);
-  midsurface_error* error = NULL;
-  const midsurface_status status =
-    midsurface_ridge_field(volume, options, distance, ridge, voxels, &error);
+  error = NULL;
+  status = midsurface_ridge_field(volume, options, distance, ridge, voxels, &error);
   check_outcome(status, error);
+  for (size_t voxel = 0; status == MIDSURFACE_STATUS_OK && voxel < voxels; voxel++)
+  {
+    require(distance[voxel] >= 0.0F && ridge[voxel] - ridge[voxel] == 0.0F);
+  }
   free(distance);
   free(ridge);
 }
 
-void fuzz_volume(const uint8_t* data, size_t size)
+typedef void run_function(
+  const midsurface_volume* volume, size_t voxels, const midsurface_options* options);
+
+static void run_on_volume(const uint8_t* data, size_t size, run_function* run)
 {
   bytes input = { data, size };
   midsurface_volume volume = { 0 };
@@ -122,16 +155,22 @@ void fuzz_volume(const uint8_t* data, size_t size)
     scalar_sizes[volume.scalar_type] <= scalar_sizes[type];
   if (fits)
   {
-    midsurface_mesh* mesh = NULL;
-    midsurface_error* error = NULL;
-    const midsurface_status status = midsurface_extract(&volume, &options, &mesh, &error);
-    check_outcome(status, error);
-    if (status == MIDSURFACE_STATUS_OK)
-    {
-      consume_mesh(mesh);
-    }
-    run_polylines(&volume, &options);
-    run_ridge_field(&volume, voxels, &options);
+    run(&volume, voxels, &options);
   }
   free(scalars);
+}
+
+void fuzz_volume(const uint8_t* data, size_t size)
+{
+  run_on_volume(data, size, run_extract);
+}
+
+void fuzz_volume_polylines(const uint8_t* data, size_t size)
+{
+  run_on_volume(data, size, run_polylines);
+}
+
+void fuzz_volume_fields(const uint8_t* data, size_t size)
+{
+  run_on_volume(data, size, run_fields);
 }
