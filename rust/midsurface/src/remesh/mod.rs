@@ -73,7 +73,7 @@ const FINE_PASSES: usize = 3;
 const POLISHING_PASSES: usize = 2;
 /// Times that points are moved in a coarse pass, where stretched triangles have to become even, and
 /// in a fine one.
-const COARSE_RELAXATIONS: usize = 5;
+const COARSE_RELAXATIONS: usize = 6;
 const FINE_RELAXATIONS: usize = 2;
 /// Points handed to a worker at a time.
 const PIECE: usize = 4096;

@@ -8,7 +8,7 @@ use crate::grid::{along, dot, sub, Vec3};
 const SHARP: f64 = 0.5;
 /// Shares of a move that are tried, until the triangles allow one. Going a little too far gets there
 /// in fewer rounds (successive over-relaxation, Young 1954).
-const SHARES: [f64; 2] = [1.4, 0.5];
+const SHARES: [f64; 2] = [1.5, 0.5];
 
 /// Moves every point once, one after the other.
 pub(super) fn relax(patch: &mut Patch) {
