@@ -120,8 +120,9 @@ fn assert_extracts(case: &Case) {
             .all(|&label| !case.labels.contains(&(label as u8))));
         return;
     };
+    // Milliseconds on a quiet machine: longer than this is a hang, however busy it is.
     assert!(
-        clock.elapsed() < Duration::from_secs(2),
+        clock.elapsed() < Duration::from_secs(20),
         "{:?}",
         clock.elapsed()
     );
