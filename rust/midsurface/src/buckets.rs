@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::error::{reserved, Result};
+
 /// The items of bucket b are `list[start[b] .. start[b + 1]]`, in the order they came in.
 pub(crate) struct Buckets<T> {
     start: Vec<u32>,
@@ -30,16 +32,21 @@ impl<T: Copy + Default> Buckets<T> {
         Self { start, list }
     }
 
-    /// Buckets that `add` fills one after the other, given the list to append to.
-    pub fn fill(count: usize, items: usize, mut add: impl FnMut(usize, &mut Vec<T>)) -> Self {
-        let mut start = Vec::with_capacity(count + 1);
-        let mut list = Vec::with_capacity(items);
+    /// Buckets that `add` fills one after the other, given the list to append to, with `most` items
+    /// in all.
+    pub fn fill(
+        count: usize,
+        most: usize,
+        mut add: impl FnMut(usize, &mut Vec<T>),
+    ) -> Result<Self> {
+        let mut start = reserved(count + 1)?;
+        let mut list = reserved(most)?;
         start.push(0);
         for bucket in 0..count {
             add(bucket, &mut list);
             start.push(list.len() as u32);
         }
-        Self { start, list }
+        Ok(Self { start, list })
     }
 
     /// Number of buckets.

@@ -39,11 +39,11 @@ pub(crate) fn extend(
     let mut open: Vec<usize> = (0..batch.part_of_brick.len()).collect();
     for last in CORE..CORE + rings {
         let mut found: Vec<(usize, Vec<(u16, Sheet)>)> = Vec::new();
-        let (before, rings) = (&*sheets, &learnt_in);
+        let (before, known_since) = (&*sheets, &learnt_in);
         execution.stream(
             &open,
             |&brick| {
-                let front = front(batch, brick, rings, last);
+                let front = front(batch, brick, known_since, last);
                 let learnt = if front.is_empty() {
                     Vec::new()
                 } else {

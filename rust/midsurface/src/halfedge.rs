@@ -2,6 +2,7 @@
 //! the next corner.
 
 use crate::buckets::Buckets;
+use crate::error::Result;
 
 /// No twin: a boundary.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -106,9 +107,11 @@ impl Fans {
     }
 
     /// The points that share an edge with each point, each once.
-    pub fn neighbours(&self, triangles: &[[u32; 3]]) -> Buckets<u32> {
+    pub fn neighbours(&self, triangles: &[[u32; 3]]) -> Result<Buckets<u32>> {
         let corner = |e: u32| ends(triangles, e).0;
-        Buckets::fill(self.0.count(), triangles.len() * 3, |p, neighbours| {
+        // On a manifold a point has at most one neighbour more than triangles.
+        let most = 3 * triangles.len() + self.0.count();
+        Buckets::fill(self.0.count(), most, |p, neighbours| {
             let first = neighbours.len();
             let half_edges = self.0.of(p);
             neighbours.extend(half_edges.iter().map(|&e| corner(next(e))));

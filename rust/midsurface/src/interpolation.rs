@@ -4,7 +4,7 @@
 //! where a field crosses a threshold does not snap to the grid, as under linear interpolation.
 
 use crate::bricks::{Directory, EDGE, LAYER};
-use crate::grid::{floor, Vec3};
+use crate::grid::{floor, round, Vec3};
 
 /// Values of the uniform cubic B-spline at offsets −1, 0, 1, 2 from the voxel below.
 fn basis(t: f64) -> [f64; 4] {
@@ -80,6 +80,12 @@ impl Sampler<'_> {
                 }
             }
         }
+    }
+
+    /// The field's value at the voxel nearest to a continuous voxel index; 0 where it has none.
+    pub fn nearest(&self, voxel: Vec3) -> f64 {
+        let entry = self.directory.entry_at(voxel.map(round));
+        entry.map_or(0.0, |entry| self.field[entry].into())
     }
 
     /// The value at a point of the volume, linear between voxels, work units.

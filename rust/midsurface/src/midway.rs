@@ -65,7 +65,7 @@ pub(crate) fn move_midway(
     execution: &mut Execution,
 ) -> Result<()> {
     let fans = Fans::new(&surface.triangles, surface.points.len());
-    let neighbours = fans.neighbours(&surface.triangles);
+    let neighbours = fans.neighbours(&surface.triangles)?;
     for step in MOVES {
         move_once(label, surface, (&fans, &neighbours), step, execution)?;
     }

@@ -5,7 +5,7 @@
 //! position.
 
 use crate::bricks::{BRICK, EDGE, LAYER};
-use crate::grid::{along, length, round, Vec3};
+use crate::grid::{along, length, Vec3};
 use crate::interpolation::Sampler;
 
 /// Shortest step along the ray, work units.
@@ -98,11 +98,7 @@ impl<'a> Ray<'a> {
 
     /// Distance to the outside at the voxel nearest to the ray, 0 outside the label.
     fn depth(&self, t: f64) -> f64 {
-        let Sampler {
-            directory, field, ..
-        } = self.distance;
-        let entry = directory.entry_at(self.at(t).map(round));
-        entry.map_or(0.0, |entry| field[entry].into())
+        self.distance.nearest(self.at(t))
     }
 
     /// The label's mask where the nearest voxel is so deep; `None` outside the volume.

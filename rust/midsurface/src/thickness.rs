@@ -1,7 +1,7 @@
 //! Both faces of the label as seen from a point of the mid-surface: how thick the label is there,
 //! and how far off its middle the point lies.
 
-use crate::grid::{length, round, unit, Vec3};
+use crate::grid::{length, unit, Vec3};
 use crate::interpolation::Sampler;
 use crate::ray::{Ray, Reach};
 
@@ -100,7 +100,5 @@ fn parallel_to_border(distance: &Sampler, p: Vec3, normal: Vec3, thickness: f64)
 
 /// Distance to the outside at the voxel nearest to a point, 0 outside the label.
 pub(crate) fn depth(distance: &Sampler, p: Vec3) -> f64 {
-    let voxel = std::array::from_fn(|a| round(p[a] / distance.h[a]));
-    let entry = distance.directory.entry_at(voxel);
-    entry.map_or(0.0, |entry| distance.field[entry].into())
+    distance.nearest(std::array::from_fn(|a| p[a] / distance.h[a]))
 }

@@ -39,7 +39,7 @@ pub(super) fn sizes(
     edge_length: f64,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
-    let neighbours = &fans.neighbours(reference.triangles);
+    let neighbours = &fans.neighbours(reference.triangles)?;
     let mut normals: Vec<Vec3> = reserved(reference.normals.len())?;
     normals.extend(reference.normals.iter().map(|n| n.map(f64::from)));
     let normals = average_normals(normals, neighbours, SMOOTHING, execution)?;
