@@ -174,7 +174,7 @@ def print_row(*cells, widths=WIDTHS):
 
 def print_stages(method, stages_of):
     """A table of the stages' shares in per cent, a column a volume."""
-    widths = (22, *(9 for _ in stages_of))
+    widths = (25, *(9 for _ in stages_of))
     print(f"\n{method}: share of the time in each stage, %\n")
     print_row("stage", *stages_of, widths=widths)
     print_row(*("-" * width for width in widths), widths=widths)

@@ -1,12 +1,11 @@
-//! A volume of 2048 × 2048 × 1024 bytes with 30 million labelled voxels, and two smaller ones as
+//! A volume of 2048 × 2048 × 1024 bytes with about 30 million labelled voxels, and two smaller ones as
 //! densely filled: seconds per million labelled voxels, and memory beyond the volume.
 //!
 //!     cargo run -p phantoms --release --example large_volume
 //!
 //! The volumes are full of vesicles, sheets and tubes, each a component of its own; the method is
-//! the ridge surface with two threads. Needs Linux, 8 GB and, where nothing else runs, a quarter of
-//! an hour. Seconds are both those of the clock and those of the processors, since only the latter
-//! mean something on a busy machine. Fails where memory, or the rise of the time for a voxel from
+//! the ridge surface with two threads. Needs Linux and 8 GB. Seconds are both those of the clock and
+//! those of the processors, since only the latter mean something on a busy machine. Fails where memory, or the rise of the time for a voxel from
 //! one size to the next, is beyond what the project promises.
 
 use std::time::Instant;

@@ -82,16 +82,21 @@ fn points(mesh: *mut midsurface_mesh) -> String {
     }
 }
 
-fn extract(volume: &midsurface_volume, options: &midsurface_options) -> Outcome {
+/// What a call that makes a mesh gives.
+fn mesh_outcome(
+    call: impl FnOnce(&mut *mut midsurface_mesh, &mut *mut midsurface_error) -> midsurface_status,
+) -> Outcome {
     let (mut mesh, mut error) = (ptr::dangling_mut(), ptr::null_mut());
-    let status = unsafe { midsurface_extract(volume, options, &mut mesh, &mut error) };
+    let status = call(&mut mesh, &mut error);
     (status, error, points(mesh))
 }
 
+fn extract(volume: &midsurface_volume, options: &midsurface_options) -> Outcome {
+    mesh_outcome(|mesh, error| unsafe { midsurface_extract(volume, options, mesh, error) })
+}
+
 fn zip(lines: *const midsurface_polylines, options: &midsurface_options) -> Outcome {
-    let (mut mesh, mut error) = (ptr::dangling_mut(), ptr::null_mut());
-    let status = unsafe { midsurface_zip(lines, options, &mut mesh, &mut error) };
-    (status, error, points(mesh))
+    mesh_outcome(|mesh, error| unsafe { midsurface_zip(lines, options, mesh, error) })
 }
 
 fn extract_polylines(volume: &midsurface_volume, options: &midsurface_options) -> Outcome {
