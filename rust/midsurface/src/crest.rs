@@ -44,29 +44,40 @@ pub(crate) fn core_sheets(
     let bricks = batch.part_of_brick.len();
     let sigma = execution.collect(bricks, |brick| mean_sigma(profile, batch, brick))?;
     let border = |brick: usize| Border::near(batch, brick, distance, REACH * sigma[brick], h);
-    let tensors = execution.collect(bricks, |brick| {
+    let mut tensors = zeros(bricks * ENTRIES * BRICK)?;
+    execution.fill(&mut tensors, ENTRIES * BRICK, |brick, out| {
         let own = &distance[brick * BRICK..][..BRICK];
         if own.iter().all(|d| *d == 0.0) {
-            return [0.0; ENTRIES * BRICK];
+            return;
         }
         let border = border(brick);
         with_widest_vectors(
             #[inline(always)]
-            || tensors(&profile.derivatives(batch, brick, h), own, border.as_ref()),
-        )
+            || {
+                let derivatives = profile.derivatives(batch, brick, h);
+                find_tensors(&derivatives, own, border.as_ref(), out);
+            },
+        );
     })?;
-    let tensors = smooth_tensors(batch, &sigma, tensors.into_flattened(), h, execution)?;
-    let sheets = execution.collect(bricks, |brick| {
+    let tensors = smooth_tensors(batch, &sigma, tensors, h, execution)?;
+    let mut sheets: Vec<Sheet> = zeros(bricks * BRICK)?;
+    execution.fill(&mut sheets, BRICK, |brick, sheets| {
         let near = Block::gather(batch, brick, distance);
         if near.values.iter().all(|d| *d == 0.0) {
-            return [Sheet::default(); BRICK];
+            return;
         }
         let tensors = &tensors[brick * BRICK * ENTRIES..][..BRICK * ENTRIES];
-        let mut sheets = with_widest_vectors(
+        with_widest_vectors(
             #[inline(always)]
             || {
                 let derivatives = profile.derivatives(batch, brick, h);
-                sheets_of_brick(&derivatives, tensors, &near.largest_near(), farthest)
+                find_sheets(
+                    &derivatives,
+                    tensors,
+                    &near.largest_near(),
+                    farthest,
+                    sheets,
+                );
             },
         );
         if let Some(border) = border(brick) {
@@ -76,9 +87,7 @@ pub(crate) fn core_sheets(
                 }
             }
         }
-        sheets
     })?;
-    let mut sheets = sheets.into_flattened();
     let variance = |brick: usize| f64::from(sigma[brick] * sigma[brick]);
     unshrink(batch, variance, &mut sheets, h, execution)?;
     Ok(sheets)
@@ -177,15 +186,15 @@ fn entry(k: usize, z: usize) -> std::ops::Range<usize> {
     first..first + LAYER
 }
 
-/// The tensors of a brick's voxels before smoothing, weighted; zero outside the label and where a
-/// border cuts the profile.
+/// Fills in the tensors of a brick's voxels before smoothing, weighted; zero, as they were, outside
+/// the label and where a border cuts the profile.
 #[inline(always)]
-fn tensors(
+fn find_tensors(
     layers: &[Derivatives],
     distance: &[f32],
     border: Option<&Border>,
-) -> [f32; ENTRIES * BRICK] {
-    let mut tensors = [0.0; ENTRIES * BRICK];
+    tensors: &mut [f32],
+) {
     for (z, (layer, distance)) in layers.iter().zip(distance.chunks_exact(LAYER)).enumerate() {
         if distance.iter().all(|d| *d == 0.0) {
             continue;
@@ -222,7 +231,6 @@ fn tensors(
             tensors[entry(k, z)].copy_from_slice(product);
         }
     }
-    tensors
 }
 
 /// How far a voxel's own normal counts, 0 to 1: less the steeper the profile falls within the sheet.
@@ -268,15 +276,15 @@ fn smooth_tensors(
     smooth_some(batch, kernel_of, tensors, &mut scratch, execution)
 }
 
-/// The sheets of a brick's core voxels, where the label is `near`.
+/// Fills in the sheets of a brick's core voxels, where the label is `near`.
 #[inline(always)]
-fn sheets_of_brick(
+fn find_sheets(
     layers: &[Derivatives],
     tensors: &[f32],
     near: &[f32],
     farthest: f32,
-) -> [Sheet; BRICK] {
-    let mut sheets = [Sheet::default(); BRICK];
+    sheets: &mut [Sheet],
+) {
     for (z, (layer, near)) in layers.iter().zip(near.chunks_exact(LAYER)).enumerate() {
         if near.iter().all(|d| *d == 0.0) {
             continue;
@@ -301,7 +309,6 @@ fn sheets_of_brick(
             *sheet = found.each_ref().map(|found| found[i]);
         }
     }
-    sheets
 }
 
 /// Newton's step along n to where the logarithm of the profile is largest, how far a step of the

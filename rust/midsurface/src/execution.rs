@@ -208,7 +208,8 @@ impl<'a> Execution<'a> {
             let seconds = clock.elapsed().as_secs_f64();
             if seconds < BATCH_SECONDS / 2.0 {
                 // Cheap items may be followed by costly ones.
-                size = (2 * size).min(MOST_ITEMS);
+                let growth = if seconds < BATCH_SECONDS / 16.0 { 8 } else { 2 };
+                size = (growth * size).min(MOST_ITEMS);
             } else if seconds > BATCH_SECONDS {
                 size = (size / 2).max(threads);
             }

@@ -91,26 +91,40 @@ impl Sampler<'_> {
     /// The value at a point of the volume, linear between voxels, work units.
     pub fn linear(&self, p: Vec3) -> f64 {
         let voxel: Vec3 = std::array::from_fn(|a| p[a] / self.h[a]);
-        let low = voxel.map(f64::floor);
+        let low = voxel.map(floor);
+        let weights: [[f64; 2]; 3] = std::array::from_fn(|a| {
+            let low = low[a] as f64;
+            [1.0 - voxel[a] + low, voxel[a] - low]
+        });
+        let values = self.corners(low);
         (0..8)
-            .map(|corner| {
-                let high = [0, 1, 2].map(|a| corner >> a & 1 == 1);
-                let weight: f64 = (0..3)
-                    .map(|a| {
-                        if high[a] {
-                            voxel[a] - low[a]
-                        } else {
-                            1.0 - voxel[a] + low[a]
-                        }
-                    })
-                    .product();
-                if weight == 0.0 {
-                    return 0.0;
-                }
-                let at = std::array::from_fn(|a| low[a] as isize + isize::from(high[a]));
-                weight * self.coefficient(at)
+            .map(|i| {
+                let [x, y, z] = [i & 1, i >> 1 & 1, i >> 2];
+                weights[0][x] * weights[1][y] * weights[2][z] * values[i]
             })
             .sum()
+    }
+
+    /// The values at a voxel and those next to it ahead, x fastest.
+    fn corners(&self, low: [isize; 3]) -> [f64; 8] {
+        let within = |a: usize| low[a] >= 0 && low[a] as usize % EDGE + 1 < EDGE;
+        if (0..3).all(within) {
+            // All eight voxels are in one brick, though maybe not in the volume.
+            let last = |a: usize| low[a] as usize + 1 < self.directory.dimensions[a];
+            if (0..3).all(last) {
+                let Some(first) = self.directory.entry_at(low) else {
+                    return [0.0; 8];
+                };
+                let field = &self.field[first..][..LAYER + EDGE + 2];
+                return std::array::from_fn(|i| {
+                    field[(i >> 2) * LAYER + (i >> 1 & 1) * EDGE + (i & 1)].into()
+                });
+            }
+        }
+        std::array::from_fn(|i| {
+            let corner = [i & 1, i >> 1 & 1, i >> 2];
+            self.coefficient(std::array::from_fn(|a| low[a] + corner[a] as isize))
+        })
     }
 
     /// The value at (x, y) in slice z, work units.

@@ -60,6 +60,7 @@ mod halfedge;
 pub mod injected_panics;
 mod interpolation;
 mod manifold;
+mod mask;
 mod mesh;
 mod midway;
 mod normals;

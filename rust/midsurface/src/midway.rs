@@ -14,7 +14,9 @@ use crate::grid::{along, dot, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::Surface;
+use crate::mask::Mask;
 use crate::normals::{average_normals, normal_of_fan};
+use crate::ray::Inside;
 use crate::thickness::View;
 
 /// Sheet fraction below which the faces seen may be a rim's.
@@ -52,6 +54,7 @@ pub(crate) struct Label<'a> {
     pub batch: &'a Batch<'a>,
     /// Distance to the outside at the voxels, work units.
     pub distance: &'a [f32],
+    pub mask: &'a Mask,
     /// Sheet fraction at each point.
     pub fraction: &'a [f64],
     /// The work spacing.
@@ -131,14 +134,15 @@ fn look(
             if fraction < INSIDE || !is_one_in(stands_for, point, label.h) {
                 continue;
             }
-            let sampler = Sampler {
+            let distance = Sampler {
                 directory: &label.batch.directories[surface.source[p] as usize],
                 field: label.distance,
                 h: label.h,
             };
-            let view = View::new(&sampler, point, normals[p]);
+            let mask = label.mask;
+            let view = View::new(&Inside { distance, mask }, point, normals[p]);
             let middle = view.to_middle.filter(|off| off.abs() <= most);
-            if let Some(off) = middle.filter(|&off| sees_faces(&sampler, point, &view, off)) {
+            if let Some(off) = middle.filter(|&off| sees_faces(&distance, point, &view, off)) {
                 let weight = f32::from(stands_for);
                 *out = [weight * off as f32, weight];
             }

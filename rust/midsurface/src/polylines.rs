@@ -15,6 +15,7 @@ use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::{Grid, Vec3};
 use crate::interpolation::Sampler;
+use crate::ray::Inside;
 use crate::resample::{arc_length, distance, resample};
 use crate::ridge::RidgeField;
 use crate::runs::Run;
@@ -143,7 +144,8 @@ impl<'a> PartField<'a> {
         let distance = self.sampler(&self.field.distance);
         let thickness = 2.0 * depth(&distance, from);
         let normal = normal_near_border(&distance, &self.field.sheets, from, normal, thickness);
-        Some(View::new(&distance, from, normal))
+        let mask = &self.field.mask;
+        Some(View::new(&Inside { distance, mask }, from, normal))
     }
 }
 

@@ -64,8 +64,10 @@ impl Profile {
         let somewhere = wanted.iter().fold(0, |bits, wanted| bits | wanted);
         execution.still(passes(somewhere, h));
         let mut levels = Vec::new();
+        let mut scratch = batch.field()?;
         for level in 0..LEVELS {
-            levels.push(smooth_level(batch, &wanted, level, distance, h, execution)?);
+            let mask = (distance, &mut scratch);
+            levels.push(smooth_level(batch, &wanted, level, mask, h, execution)?);
         }
         Ok(Self {
             levels,
@@ -178,12 +180,13 @@ fn passes(levels: u8, h: Vec3) -> usize {
         .sum()
 }
 
-/// The mask at one level, right in the bricks that want it and a voxel around.
+/// The mask at one level, right in the bricks that want it and a voxel around; the mask is where
+/// `distance` is positive, and `scratch`, as long, is overwritten.
 fn smooth_level(
     batch: &Batch,
     wanted: &[u8],
     level: usize,
-    distance: &[f32],
+    (distance, scratch): (&[f32], &mut Vec<f32>),
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
@@ -203,9 +206,8 @@ fn smooth_level(
         })?;
     }
     let mask = mask(batch, distance, execution)?;
-    let mut scratch = batch.field()?;
     let kernel_of = |brick: usize| active[brick].then_some(&kernels[0]);
-    smooth_some(batch, kernel_of, mask, &mut scratch, execution)
+    smooth_some(batch, kernel_of, mask, scratch, execution)
 }
 
 /// 1 where the label is, 0 elsewhere; pages without a label stay untouched.

@@ -4,9 +4,10 @@
 //! the ray jumps, near it goes in short steps, and the crossing within the last one is found by false
 //! position.
 
-use crate::bricks::{BRICK, EDGE, LAYER};
+use crate::bricks::EDGE;
 use crate::grid::{along, length, Vec3};
 use crate::interpolation::Sampler;
+use crate::mask::Mask;
 
 /// Shortest step along the ray, work units.
 const STEP: f64 = 0.5;
@@ -22,21 +23,33 @@ pub(crate) enum Reach {
     Border,
 }
 
+/// A label: the distance to the outside, positive within, and the mask of that.
+pub(crate) struct Inside<'a> {
+    pub distance: Sampler<'a>,
+    pub mask: &'a Mask,
+}
+
 /// A ray, in voxels.
 pub(crate) struct Ray<'a> {
-    distance: &'a Sampler<'a>,
+    label: &'a Inside<'a>,
+    /// The volume's last voxel along each axis.
+    last: Vec3,
+    /// A voxel so deep has all those around it within the label: a voxel's diagonal.
+    deep: f64,
     from: Vec3,
     /// Voxels in a work unit of its length.
     direction: Vec3,
 }
 
 impl<'a> Ray<'a> {
-    /// A ray from a point in a unit direction, work units, through the label where `distance`, that
-    /// to the outside, is positive.
-    pub fn new(distance: &'a Sampler<'a>, from: Vec3, direction: Vec3) -> Self {
-        let voxels = |v: Vec3| std::array::from_fn(|a| v[a] / distance.h[a]);
+    /// A ray from a point in a unit direction, work units, through the label.
+    pub fn new(label: &'a Inside<'a>, from: Vec3, direction: Vec3) -> Self {
+        let Sampler { directory, h, .. } = label.distance;
+        let voxels = |v: Vec3| std::array::from_fn(|a| v[a] / h[a]);
         Self {
-            distance,
+            label,
+            last: directory.dimensions.map(|count| (count - 1) as f64),
+            deep: length(h),
             from: voxels(from),
             direction: voxels(direction),
         }
@@ -98,13 +111,13 @@ impl<'a> Ray<'a> {
 
     /// Distance to the outside at the voxel nearest to the ray, 0 outside the label.
     fn depth(&self, t: f64) -> f64 {
-        self.distance.nearest(self.at(t))
+        self.label.distance.nearest(self.at(t))
     }
 
     /// The label's mask where the nearest voxel is so deep; `None` outside the volume.
     fn mask(&self, t: f64, depth: f64) -> Option<f64> {
         // The eight voxels around are within a voxel's diagonal of the nearest one.
-        if depth > length(self.distance.h) {
+        if depth > self.deep {
             self.is_within_volume(self.at(t)).then_some(1.0)
         } else {
             self.interpolated(t)
@@ -112,8 +125,7 @@ impl<'a> Ray<'a> {
     }
 
     fn is_within_volume(&self, voxel: Vec3) -> bool {
-        let dimensions = self.distance.directory.dimensions;
-        (0..3).all(|a| voxel[a] >= 0.0 && voxel[a] <= (dimensions[a] - 1) as f64)
+        (0..3).all(|a| voxel[a] >= 0.0 && voxel[a] <= self.last[a])
     }
 
     /// The label's mask, linear between voxels; `None` outside the volume.
@@ -124,47 +136,18 @@ impl<'a> Ray<'a> {
         }
         // None is negative, so that a cast is the floor.
         let low = voxel.map(|v| v as usize);
+        let Some(brick) = self.label.distance.directory.brick(low.map(|v| v / EDGE)) else {
+            return Some(0.0);
+        };
+        let corners = self.label.mask.corners(brick, low.map(|v| v % EDGE));
+        if corners == 0 || corners == u8::MAX {
+            return Some(f64::from(corners & 1));
+        }
         let [x, y, z]: Vec3 = std::array::from_fn(|a| voxel[a] - low[a] as f64);
-        let m = self.corners(low);
+        let m = |i: usize| f64::from(corners >> i & 1);
         let between = |t: f64, a: f64, b: f64| a + t * (b - a);
-        let along_x = |i: usize| between(x, m[i], m[i + 1]);
+        let along_x = |i: usize| between(x, m(i), m(i + 1));
         let along_y = |i: usize| between(y, along_x(i), along_x(i + 2));
         Some(between(z, along_y(0), along_y(4)))
-    }
-
-    /// The mask at a voxel and those next to it ahead, x fastest.
-    fn corners(&self, low: [usize; 3]) -> [f64; 8] {
-        let Sampler {
-            directory, field, ..
-        } = *self.distance;
-        let mut mask = [0.0; 8];
-        if low.iter().all(|v| v % EDGE + 1 < EDGE) {
-            // All eight voxels are in one brick.
-            if let Some(first) = directory.entry(low) {
-                let field = &field[first..][..LAYER + EDGE + 2];
-                for (i, mask) in mask.iter_mut().enumerate() {
-                    let offset = (i >> 2) * LAYER + (i >> 1 & 1) * EDGE + (i & 1);
-                    *mask = f64::from(u8::from(field[offset] > 0.0));
-                }
-            }
-            return mask;
-        }
-        // The corners are in up to eight bricks, mostly in two.
-        let crosses = low.map(|v| usize::from(v % EDGE + 1 == EDGE));
-        let mut bricks = [None; 8];
-        for i in 0..8 {
-            let corner = [i & 1, i >> 1 & 1, i >> 2];
-            let side: [usize; 3] = std::array::from_fn(|a| corner[a] & crosses[a]);
-            let first = side[0] | side[1] << 1 | side[2] << 2;
-            if i == first {
-                bricks[i] = directory.brick(std::array::from_fn(|a| low[a] / EDGE + side[a]));
-            }
-            if let Some(brick) = bricks[first] {
-                let [x, y, z]: [usize; 3] = std::array::from_fn(|a| (low[a] + corner[a]) % EDGE);
-                let depth = field[brick * BRICK + z * LAYER + y * EDGE + x];
-                mask[i] = f64::from(u8::from(depth > 0.0));
-            }
-        }
-        mask
     }
 }

@@ -14,6 +14,7 @@ use crate::distance::distance;
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
+use crate::mask::{self, Mask};
 use crate::separable::{local_maximum, smooth, Kernel};
 use crate::sheet::{self, sheets, unshrink, Sheet};
 
@@ -24,12 +25,14 @@ pub(crate) const LARGEST_SCALE: f64 = 8.0;
 const SMALLEST_SCALE: f64 = 0.8;
 
 /// Passes over all bricks that [`ridge_field`] makes, for its progress.
-pub(crate) const PASSES: usize = 15 + sheet::PASSES;
+pub(crate) const PASSES: usize = 15 + mask::PASSES + sheet::PASSES;
 
 /// The fields of a batch, over its bricks.
 pub(crate) struct RidgeField {
     /// Distance to the outside of the part, work units.
     pub distance: Vec<f32>,
+    /// Where that is positive.
+    pub mask: Mask,
     /// The smoothed distance, work units.
     pub ridge: Vec<f32>,
     /// The smoothed mask over that of an endless sheet.
@@ -93,6 +96,7 @@ pub(crate) fn ridge_field<'a>(
     let variance = |brick: usize| variance[batch.part_of_brick[brick] as usize];
     unshrink(&batch, variance, &mut sheets, h, execution)?;
     let field = RidgeField {
+        mask: Mask::new(&batch, &distance, execution)?,
         distance,
         ridge,
         fraction,

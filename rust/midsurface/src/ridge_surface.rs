@@ -20,10 +20,12 @@ use crate::grid::{Grid, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::{make_manifold, Surface};
+use crate::mask::{self, Mask};
 use crate::mesh::{drop_degenerate, turn_outward, Mesh};
 use crate::midway::{self, move_midway, Label};
 use crate::normals::{normals, NORMAL_PASSES};
 use crate::profile::Profile;
+use crate::ray::Inside;
 use crate::remesh::remesh;
 use crate::rim::{self, sheet_fraction};
 use crate::scale::{self, HalfThickness};
@@ -69,11 +71,14 @@ pub(crate) fn ridge_surface(
     let distance = distance::distance(batch, h, execution)?;
     let sheets = find_sheets(batch, &distance, h, execution)?;
     let (mut surface, fraction) = cut_surface(batch, sheets, &distance, h, execution)?;
-    execution.stage("Moving midway", 0.49, 0.65, 1 + midway::PASSES)?;
+    let passes = mask::PASSES + 1 + midway::PASSES;
+    execution.stage("Moving midway", 0.49, 0.65, passes)?;
+    let mask = Mask::new(batch, &distance, execution)?;
     let fraction = values(batch, &surface, &fraction, h, execution)?;
     let label = Label {
         batch,
         distance: &distance,
+        mask: &mask,
         fraction: &fraction,
         h,
     };
@@ -102,7 +107,8 @@ pub(crate) fn ridge_surface(
     execution.stage("Flattening terraces", 0.94, 1.0, passes)?;
     let mut found = sound(found, grid)?;
     flatten(&mut found, wanted, execution)?;
-    append(batch, &distance, grid, sound(found, grid)?, mesh, execution)
+    let found = sound(found, grid)?;
+    append(batch, (&distance, &mask), grid, found, mesh, execution)
 }
 
 /// Removes the terraces of sheets nearly parallel to a lattice plane; rims stay.
@@ -161,9 +167,7 @@ fn find_sheets(
     )?;
     extend(batch, distance, RINGS, farthest, h, &mut sheets, execution)?;
     execution.stage("Settling sheets", 0.28, 0.37, SETTLINGS)?;
-    for _ in 0..SETTLINGS {
-        settle(batch, &mut sheets, h, execution)?;
-    }
+    settle(batch, &mut sheets, SETTLINGS, h, execution)?;
     Ok(sheets)
 }
 
@@ -219,7 +223,7 @@ fn values(
 /// Appends a finished surface to the mesh, in world coordinates; `source` is the part of each point.
 fn append(
     batch: &Batch,
-    distance: &[f32],
+    (distance, mask): (&[f32], &Mask),
     grid: &Grid,
     found: Surface,
     mesh: &mut Mesh,
@@ -233,12 +237,12 @@ fn append(
         for (i, out) in out.iter_mut().enumerate() {
             let p = PIECE * piece + i;
             let directory = &batch.directories[found.source[p] as usize];
-            let sampler = Sampler {
+            let distance = Sampler {
                 directory,
                 field: distance,
                 h,
             };
-            let view = View::new(&sampler, found.points[p], normals[p]);
+            let view = View::new(&Inside { distance, mask }, found.points[p], normals[p]);
             *out = (view.thickness * grid.unit()) as f32;
         }
     })?;

@@ -6,7 +6,7 @@
 
 use crate::block::{row, Block, SIDE};
 use crate::bricks::{Batch, BRICK, EDGE};
-use crate::error::Result;
+use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::sheet::{dot, Sheet};
@@ -16,26 +16,31 @@ use crate::sheet::{dot, Sheet};
 const ALIKE: f32 = 0.6;
 const NEAR: f32 = 0.7;
 
-/// Lets the sheets settle, once.
+/// Lets the sheets settle, so many times.
 pub(crate) fn settle(
     batch: &Batch,
     sheets: &mut Vec<Sheet>,
+    times: usize,
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<()> {
-    let before = &*sheets;
-    let settled = execution.collect(batch.part_of_brick.len(), |brick| {
-        let own = &before[brick * BRICK..][..BRICK];
-        if own.iter().all(|sheet| *sheet == Sheet::default()) {
-            return [Sheet::default(); BRICK];
-        }
-        let block = Block::gather(batch, brick, before);
-        std::array::from_fn(|i| {
-            let at = row(i / EDGE % EDGE, i / EDGE / EDGE) + i % EDGE;
-            agreed(&block.values, at, h)
-        })
-    })?;
-    *sheets = settled.into_flattened();
+    let mut settled: Vec<Sheet> = zeros(sheets.len())?;
+    for _ in 0..times {
+        let before = &*sheets;
+        execution.fill(&mut settled, BRICK, |brick, out| {
+            let own = &before[brick * BRICK..][..BRICK];
+            // A voxel that knows no sheet never will: its zeros stay.
+            if own.iter().all(|sheet| *sheet == Sheet::default()) {
+                return;
+            }
+            let block = Block::gather(batch, brick, before);
+            for (i, out) in out.iter_mut().enumerate() {
+                let at = row(i / EDGE % EDGE, i / EDGE / EDGE) + i % EDGE;
+                *out = agreed(&block.values, at, h);
+            }
+        })?;
+        std::mem::swap(sheets, &mut settled);
+    }
     Ok(())
 }
 

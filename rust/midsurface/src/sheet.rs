@@ -239,10 +239,11 @@ pub(crate) fn unshrink(
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<()> {
-    let shifts = execution.collect(batch.part_of_brick.len(), |brick| {
+    let mut shifts = batch.field()?;
+    execution.fill(&mut shifts, BRICK, |brick, shifts| {
         let own = &sheets[brick * BRICK..][..BRICK];
         if own.iter().all(|sheet| *sheet == Sheet::default()) {
-            return [0.0; BRICK];
+            return;
         }
         let half_variance = (0.5 * variance(brick)) as f32;
         let block = Block::gather(batch, brick, sheets);
@@ -250,11 +251,17 @@ pub(crate) fn unshrink(
             #[inline(always)]
             || divergence(&block.values, h),
         );
-        divergence.map(|divergence| (half_variance * divergence).clamp(-MOST_SHRUNK, MOST_SHRUNK))
+        for (shift, divergence) in shifts.iter_mut().zip(divergence) {
+            *shift = (half_variance * divergence).clamp(-MOST_SHRUNK, MOST_SHRUNK);
+        }
     })?;
     execution.fill(sheets, BRICK, |brick, sheets| {
-        for (sheet, shift) in sheets.iter_mut().zip(&shifts[brick]) {
-            sheet[3] += shift;
+        let shifts = &shifts[brick * BRICK..][..BRICK];
+        for (sheet, shift) in sheets.iter_mut().zip(shifts) {
+            // Pages without a sheet stay untouched.
+            if *shift != 0.0 {
+                sheet[3] += shift;
+            }
         }
     })
 }

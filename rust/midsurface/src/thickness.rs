@@ -3,7 +3,7 @@
 
 use crate::grid::{length, unit, Vec3};
 use crate::interpolation::Sampler;
-use crate::ray::{Ray, Reach};
+use crate::ray::{Inside, Ray, Reach};
 
 /// The thickness that a point beside the label is given, work units: others are divided by it.
 const LEAST: f64 = 0.01;
@@ -28,10 +28,10 @@ impl View {
     /// Looks both ways along the sheet's normal. Near a border of the volume, where one of these
     /// rays or the ridge field's reach ends in the unknown, the middle is looked for parallel to
     /// the border: across a sheet that is flat nearby, every line's middle is on the mid-surface.
-    pub fn new(distance: &Sampler, from: Vec3, normal: Vec3) -> Self {
-        let look = |v: Vec3| {
-            [v, v.map(|x| -x)].map(|direction| Ray::new(distance, from, direction).reach())
-        };
+    pub fn new(label: &Inside, from: Vec3, normal: Vec3) -> Self {
+        let distance = &label.distance;
+        let look =
+            |v: Vec3| [v, v.map(|x| -x)].map(|direction| Ray::new(label, from, direction).reach());
         let ahead = look(normal);
         let about = match ahead {
             [Reach::Face(a), Reach::Face(b)] => a + b,
