@@ -3,6 +3,12 @@
 use std::ops::Range;
 
 use crate::error::{reserved, Result};
+use crate::execution::Execution;
+
+/// Buckets handed to a worker at a time.
+const PIECE: usize = 1024;
+/// Passes over the buckets that [`Buckets::fill`] makes, for its progress.
+pub(crate) const PASSES: usize = 1;
 
 /// The items of bucket b are `list[start[b] .. start[b + 1]]`, in the order they came in.
 pub(crate) struct Buckets<T> {
@@ -15,37 +21,52 @@ impl<T: Copy + Default> Buckets<T> {
     /// has to give the same ones.
     pub fn new<I: Iterator<Item = (u32, T)>>(count: usize, items: impl Fn() -> I) -> Self {
         let mut start = vec![0u32; count + 2];
-        for (bucket, _) in items() {
-            start[bucket as usize + 2] += 1;
-        }
+        items().for_each(|(bucket, _)| start[bucket as usize + 2] += 1);
         for b in 1..start.len() {
             start[b] += start[b - 1];
         }
         // Filling moves the start of a bucket, kept one place on, to its end.
         let mut list = vec![T::default(); start[count + 1] as usize];
-        for (bucket, item) in items() {
+        items().for_each(|(bucket, item)| {
             let slot = &mut start[bucket as usize + 1];
             list[*slot as usize] = item;
             *slot += 1;
-        }
+        });
         start.pop();
         Self { start, list }
     }
 
-    /// Buckets that `add` fills one after the other, given the list to append to, with `most` items
-    /// in all.
+    /// Buckets that `add` fills, in any order, given the list to append to, with `most` items in all.
     pub fn fill(
         count: usize,
         most: usize,
-        mut add: impl FnMut(usize, &mut Vec<T>),
-    ) -> Result<Self> {
+        add: impl Fn(usize, &mut Vec<T>) + Sync,
+        execution: &mut Execution,
+    ) -> Result<Self>
+    where
+        T: Send,
+    {
         let mut start = reserved(count + 1)?;
         let mut list = reserved(most)?;
         start.push(0);
-        for bucket in 0..count {
-            add(bucket, &mut list);
-            start.push(list.len() as u32);
-        }
+        let pieces: Vec<usize> = (0..count).step_by(PIECE).collect();
+        execution.stream(
+            &pieces,
+            |&first| {
+                let (mut ends, mut items) = (Vec::with_capacity(PIECE), Vec::new());
+                for bucket in first..(first + PIECE).min(count) {
+                    add(bucket, &mut items);
+                    ends.push(items.len() as u32);
+                }
+                (ends, items)
+            },
+            |(ends, items): (Vec<u32>, Vec<T>)| {
+                let before = list.len() as u32;
+                start.extend(ends.into_iter().map(|end| before + end));
+                list.extend(items);
+                Ok(())
+            },
+        )?;
         Ok(Self { start, list })
     }
 

@@ -106,6 +106,9 @@ impl Cells {
         let from = crossings.first_cube;
         for z in from[2]..=EDGE.min(crossings.last[2]) {
             for y in from[1]..=EDGE.min(crossings.last[1]) {
+                if !crossings.has_crossed_near(y, z) {
+                    continue;
+                }
                 for x in from[0]..=EDGE.min(crossings.last[0]) {
                     cells.add_cube(crossings, [x, y, z], &mut points);
                 }
@@ -284,6 +287,10 @@ struct Crossings {
     /// Voxel of the volume at the block's first, which may lie outside.
     start: [isize; 3],
     h: Vec3,
+    /// Where crossed edges are crossed, from the block's first voxel, and the sheet's normal there.
+    places: Vec<(Vec3, Vec3)>,
+    /// Which of these is that of the edge from each voxel along x, y, z.
+    number: [[u16; 3]; SIDE * SIDE * SIDE],
 }
 
 impl Crossings {
@@ -306,8 +313,11 @@ impl Crossings {
             }),
             start,
             h,
+            places: Vec::new(),
+            number: [[0; 3]; SIDE * SIDE * SIDE],
         };
         crossings.find_crossed();
+        crossings.find_places();
         Some(crossings)
     }
 
@@ -323,6 +333,15 @@ impl Crossings {
                 }
             }
         }
+    }
+
+    /// Whether any edge is crossed in the cubes whose low corners are in a row.
+    fn has_crossed_near(&self, y: usize, z: usize) -> bool {
+        let is_crossed = |y: usize, z: usize| {
+            let row = &self.crossed[(z * SIDE + y) * SIDE..][..SIDE];
+            row.iter().fold(0, |any, c| any | c) != 0
+        };
+        is_crossed(y, z) || is_crossed(y + 1, z) || is_crossed(y, z + 1) || is_crossed(y + 1, z + 1)
     }
 
     /// Whether the sheet passes between a voxel and its neighbour along an axis.
@@ -343,8 +362,21 @@ impl Crossings {
         f64::from((found - expected).abs()) <= SEAM
     }
 
-    /// Where the sheet crosses an edge, from the block's first voxel, and its normal there.
+    fn find_places(&mut self) {
+        for at in 0..self.crossed.len() {
+            for axis in (0..3).filter(|axis| self.crossed[at] >> axis & 1 == 1) {
+                self.number[at][axis] = self.places.len() as u16;
+                self.places.push(self.find_place(at, axis));
+            }
+        }
+    }
+
+    /// Where the sheet crosses an edge and its normal there.
     fn crossing(&self, at: usize, axis: usize) -> (Vec3, Vec3) {
+        self.places[self.number[at][axis] as usize]
+    }
+
+    fn find_place(&self, at: usize, axis: usize) -> (Vec3, Vec3) {
         let (a, b) = (
             &self.sheets.values[at],
             &self.sheets.values[at + STRIDE[axis]],
@@ -389,8 +421,13 @@ impl Crossings {
             let d = sub(q, p);
             dot(d, m).abs() + dot(d, n).abs()
         };
-        let own: Vec<usize> = (0..4).filter(|&i| crossed[i]).collect();
-        let pairs: [Option<(usize, usize)>; 2] = match own[..] {
+        let mut own = [0; 4];
+        let mut count = 0;
+        for i in (0..4).filter(|&i| crossed[i]) {
+            own[count] = i;
+            count += 1;
+        }
+        let pairs: [Option<(usize, usize)>; 2] = match own[..count] {
             [i, j] => [Some((i, j)), None],
             [i, j, k] => {
                 let (ij, ik, jk) = (gap(i, j), gap(i, k), gap(j, k));

@@ -131,6 +131,11 @@ impl<'a> Execution<'a> {
         (self.stage, self.passes_done)
     }
 
+    /// Runs `work` in the pool: for passes that are over too soon to be reported.
+    pub fn in_pool<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        self.pool.install(work)
+    }
+
     /// Hands `f` of every item, in the items' order, to `keep` on the calling thread.
     pub fn stream<T: Sync, R: Send>(
         &mut self,

@@ -10,7 +10,7 @@ use crate::bricks::{Batch, BRICK, EDGE};
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
-use crate::sheet::{dot, Sheet};
+use crate::sheet::{by_offset, dot, Sheet};
 
 /// Neighbours that say the same: normals within this cosine, offsets within this many work units.
 const ALIKE: f32 = 0.7;
@@ -166,12 +166,18 @@ fn continued(known: &Block<Sheet>, at: usize, bend: &Bend, h: Vec3) -> Option<Sh
     if count == 0 {
         return None;
     }
-    said[..count].sort_unstable_by(|a, b| a[3].total_cmp(&b[3]));
-    let first = said[count / 2];
+    let mut order = [0; 26];
+    for (i, (order, sheet)) in order.iter_mut().zip(&said[..count]).enumerate() {
+        *order = by_offset(sheet, i);
+    }
+    let order = &mut order[..count];
+    order.sort_unstable();
+    let said = |i: usize| &said[order[i] as u32 as usize];
+    let first = *said(count / 2);
     let normal = |s: &Sheet| [s[0], s[1], s[2]];
     let mut sum = [0.0; 4];
     let mut agreed = 0.0;
-    for sheet in &said[..count] {
+    for sheet in (0..count).map(said) {
         let cosine = dot(normal(sheet), normal(&first));
         let turn = cosine.signum();
         if cosine.abs() >= ALIKE && (turn * sheet[3] - first[3]).abs() <= NEAR {

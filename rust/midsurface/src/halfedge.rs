@@ -1,11 +1,19 @@
 //! Half-edges of a triangle list, as arrays: half-edge 3 t + k goes from corner k of triangle t to
 //! the next corner.
 
+use rayon::prelude::*;
+
 use crate::buckets::Buckets;
-use crate::error::Result;
+use crate::error::{zeros, Result};
+use crate::execution::Execution;
 
 /// No twin: a boundary.
 pub(crate) const NONE: u32 = u32::MAX;
+
+/// Half-edges handed to a worker at a time.
+const PIECE: usize = 4096;
+/// Passes over the half-edges that [`twins`] makes, for its progress.
+pub(crate) const TWIN_PASSES: usize = 1;
 
 /// Start and end point of a half-edge.
 pub(crate) fn ends(triangles: &[[u32; 3]], half_edge: u32) -> (u32, u32) {
@@ -32,6 +40,60 @@ pub(crate) fn previous(half_edge: u32) -> u32 {
     }
 }
 
+/// All half-edges, each with its start and end point.
+fn half_edges(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32, u32)> + '_ {
+    let of_triangle = |(t, &[a, b, c]): (usize, &[u32; 3])| {
+        let first = 3 * t as u32;
+        [(first, a, b), (first + 1, b, c), (first + 2, c, a)]
+    };
+    triangles.iter().enumerate().flat_map(of_triangle)
+}
+
+/// The triangles that have a corner among some points, ascending.
+pub(crate) fn triangles_at(
+    triangles: &[[u32; 3]],
+    wanted: &[bool],
+    execution: &Execution,
+) -> Vec<u32> {
+    let is_there = |t: &u32| {
+        let corners = triangles[*t as usize];
+        corners.iter().any(|&p| wanted[p as usize])
+    };
+    execution.in_pool(|| {
+        let all = (0..triangles.len() as u32).into_par_iter();
+        all.filter(is_there).collect()
+    })
+}
+
+/// A half-edge with start and end, as what is sorted into a bucket: the smaller end p, and with the
+/// half-edge the larger one.
+fn by_smaller_end((e, a, b): (u32, u32, u32)) -> (u32, (u32, u32)) {
+    (a.min(b), (a.max(b), e))
+}
+
+/// The other half-edge of each edge that exactly two triangles share, whatever their winding.
+pub(crate) fn twins(
+    triangles: &[[u32; 3]],
+    points: usize,
+    execution: &mut Execution,
+) -> Result<Vec<u32>> {
+    let edges = Buckets::new(points, || half_edges(triangles).map(by_smaller_end));
+    let mut twins = zeros(3 * triangles.len())?;
+    execution.fill(&mut twins, PIECE, |piece, out| {
+        for (i, twin) in out.iter_mut().enumerate() {
+            let e = (piece * PIECE + i) as u32;
+            let (a, b) = ends(triangles, e);
+            let of_edge = edges.of(a.min(b) as usize).iter();
+            let mut others = of_edge.filter(|&&(q, f)| q == a.max(b) && f != e);
+            *twin = match (others.next(), others.next()) {
+                (Some(&(_, f)), None) => f,
+                _ => NONE,
+            };
+        }
+    })?;
+    Ok(twins)
+}
+
 /// The half-edges that leave or enter each point p, with p the smaller end: the larger end and the
 /// half-edge, ordered by the larger end.
 pub(crate) struct Edges(Buckets<(u32, u32)>);
@@ -39,12 +101,25 @@ pub(crate) struct Edges(Buckets<(u32, u32)>);
 impl Edges {
     /// Sorts the half-edges into buckets by their smaller end, without hashing.
     pub fn new(triangles: &[[u32; 3]], points: usize) -> Self {
-        let mut edges = Buckets::new(points, || {
-            (0..3 * triangles.len() as u32).map(|e| {
+        Self::of_half_edges(points, || half_edges(triangles))
+    }
+
+    /// Those of some triangles only.
+    pub fn of_triangles(triangles: &[[u32; 3]], wanted: &[u32], points: usize) -> Self {
+        Self::of_half_edges(points, || {
+            let all = wanted.iter().flat_map(|&t| 3 * t..3 * t + 3);
+            all.map(|e| {
                 let (a, b) = ends(triangles, e);
-                (a.min(b), (a.max(b), e))
+                (e, a, b)
             })
-        });
+        })
+    }
+
+    fn of_half_edges<I: Iterator<Item = (u32, u32, u32)>>(
+        points: usize,
+        half_edges: impl Fn() -> I,
+    ) -> Self {
+        let mut edges = Buckets::new(points, || half_edges().map(by_smaller_end));
         for p in 0..points {
             edges.of_mut(p).sort_unstable();
         }
@@ -81,15 +156,17 @@ impl Fans {
     /// Sorts the half-edges into buckets by their origin.
     pub fn new(triangles: &[[u32; 3]], points: usize) -> Self {
         Self(Buckets::new(points, || {
-            (0..3 * triangles.len() as u32).map(|e| (ends(triangles, e).0, e))
+            half_edges(triangles).map(|(e, a, _)| (a, e))
         }))
     }
 
-    /// Those of some points only; the others have no half-edges.
-    pub fn of_points(triangles: &[[u32; 3]], wanted: &[bool]) -> Self {
+    /// Those of some points only; the others have no half-edges. `around` are the triangles that have
+    /// a corner there, ascending, and maybe others.
+    pub fn of_points(triangles: &[[u32; 3]], around: &[u32], wanted: &[bool]) -> Self {
         Self(Buckets::new(wanted.len(), || {
-            let half_edges = (0..3 * triangles.len() as u32).map(|e| (ends(triangles, e).0, e));
-            half_edges.filter(|(p, _)| wanted[*p as usize])
+            let half_edges = around.iter().flat_map(|&t| 3 * t..3 * t + 3);
+            let leaving = half_edges.map(|e| (ends(triangles, e).0, e));
+            leaving.filter(|(p, _)| wanted[*p as usize])
         }))
     }
 
@@ -101,17 +178,44 @@ impl Fans {
         half_edges().any(|e| half_edges().all(|f| corner(previous(f)) != corner(next(e))))
     }
 
+    /// The points next to one on the boundary of a consistently wound manifold, along the boundary,
+    /// in the order of their half-edges.
+    pub fn along_boundary(
+        &self,
+        triangles: &[[u32; 3]],
+        p: u32,
+    ) -> impl Iterator<Item = u32> + Clone {
+        let (to, from) = (
+            |e: u32| ends(triangles, e).1,
+            |e: u32| ends(triangles, previous(e)).0,
+        );
+        let half_edges = || self.of(p).iter().copied();
+        let ahead = half_edges().find(|&e| half_edges().all(|f| from(f) != to(e)));
+        let back = half_edges().find(|&e| half_edges().all(|f| to(f) != from(e)));
+        let (ahead, back) = (
+            ahead.map(|e| (e, to(e))),
+            back.map(|e| (previous(e), from(e))),
+        );
+        let mut both = [ahead, back];
+        both.sort_unstable();
+        both.into_iter().flatten().map(|(_, q)| q)
+    }
+
     /// The half-edges that leave a point.
     pub fn of(&self, p: u32) -> &[u32] {
         self.0.of(p as usize)
     }
 
     /// The points that share an edge with each point, each once.
-    pub fn neighbours(&self, triangles: &[[u32; 3]]) -> Result<Buckets<u32>> {
+    pub fn neighbours(
+        &self,
+        triangles: &[[u32; 3]],
+        execution: &mut Execution,
+    ) -> Result<Buckets<u32>> {
         let corner = |e: u32| ends(triangles, e).0;
         // On a manifold a point has at most one neighbour more than triangles.
         let most = 3 * triangles.len() + self.0.count();
-        Buckets::fill(self.0.count(), most, |p, neighbours| {
+        let add = |p: usize, neighbours: &mut Vec<u32>| {
             let first = neighbours.len();
             let half_edges = self.0.of(p);
             neighbours.extend(half_edges.iter().map(|&e| corner(next(e))));
@@ -121,7 +225,8 @@ impl Fans {
                     neighbours.push(q);
                 }
             }
-        })
+        };
+        Buckets::fill(self.0.count(), most, add, execution)
     }
 
     /// The opposite half-edge of a half-edge of a consistently wound manifold, or [`NONE`].

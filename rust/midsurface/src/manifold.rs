@@ -6,8 +6,14 @@
 //! coincide.
 
 use crate::error::{zeros, Result};
+use crate::execution::Execution;
 use crate::grid::{along, sub, Vec3};
-use crate::halfedge::{ends, next, previous, Edges, MOST_AROUND, NONE};
+use crate::halfedge::{self, ends, next, previous, triangles_at, twins, Fans, MOST_AROUND, NONE};
+
+/// Half-edges or points handed to a worker at a time.
+const PIECE: usize = 4096;
+/// Passes that [`make_manifold`] makes, for its progress.
+pub(crate) const PASSES: usize = halfedge::TWIN_PASSES + 2;
 
 /// How far a copy of a point moves towards its own triangles.
 const APART: f64 = 0.01;
@@ -47,15 +53,19 @@ impl Surface {
 
 /// Turns triangles of `surface` so that neighbours agree, cuts where they cannot, and splits
 /// pinched points.
-pub(crate) fn make_manifold(surface: &mut Surface) {
-    let mut twins = Edges::new(&surface.triangles, surface.points.len()).twins();
-    orient(&mut surface.triangles, &mut twins);
-    split_points(surface, &twins);
+pub(crate) fn make_manifold(surface: &mut Surface, execution: &mut Execution) -> Result<()> {
+    let mut twins = twins(&surface.triangles, surface.points.len(), execution)?;
+    orient(&mut surface.triangles, &mut twins, execution)?;
+    split_points(surface, &twins, execution)
 }
 
 /// Winds the triangles of each connected piece like its first one; where two neighbours still
 /// disagree, their edge is cut. The half-edges of a turned triangle change places.
-fn orient(triangles: &mut [[u32; 3]], twins: &mut Vec<u32>) {
+fn orient(
+    triangles: &mut [[u32; 3]],
+    twins: &mut Vec<u32>,
+    execution: &mut Execution,
+) -> Result<()> {
     let mut turned = vec![None; triangles.len()];
     let mut stack = Vec::new();
     for seed in 0..triangles.len() {
@@ -95,37 +105,106 @@ fn orient(triangles: &mut [[u32; 3]], twins: &mut Vec<u32>) {
             e
         }
     };
-    let mut new_twins = vec![NONE; twins.len()];
-    for e in 0..twins.len() as u32 {
-        if twins[e as usize] != NONE {
-            new_twins[moved(e) as usize] = moved(twins[e as usize]);
+    let mut moved_twins: Vec<u32> = zeros(twins.len())?;
+    execution.fill(&mut moved_twins, PIECE, |piece, out| {
+        for (i, twin) in out.iter_mut().enumerate() {
+            *twin = match twins[moved((piece * PIECE + i) as u32) as usize] {
+                NONE => NONE,
+                twin => moved(twin),
+            };
         }
-    }
-    *twins = new_twins;
+    })?;
+    *twins = moved_twins;
     for (triangle, turned) in triangles.iter_mut().zip(&turned) {
         if *turned == Some(true) {
             triangle.swap(1, 2);
         }
     }
+    Ok(())
 }
 
 /// Gives each fan of triangles around a point a point of its own.
-fn split_points(surface: &mut Surface, twins: &[u32]) {
-    let corners = surface.triangles.len() * 3;
-    let mut fan_of_corner = vec![false; corners];
-    let mut claimed = vec![false; surface.points.len()];
-    for corner in 0..corners as u32 {
-        if fan_of_corner[corner as usize] {
-            continue;
+fn split_points(surface: &mut Surface, twins: &[u32], execution: &mut Execution) -> Result<()> {
+    let back = |at: u32| twins[previous(at) as usize];
+    let ahead = |at: u32| match twins[at as usize] {
+        NONE => NONE,
+        twin => next(twin),
+    };
+    // Each point's number of corners, and one of them.
+    let mut corners: Vec<(u32, u32)> = zeros(surface.points.len())?;
+    for (corner, &p) in surface.triangles.as_flattened().iter().enumerate() {
+        let known = &mut corners[p as usize];
+        *known = (known.0 + 1, corner as u32);
+    }
+    let mut pinched: Vec<bool> = zeros(corners.len())?;
+    execution.fill(&mut pinched, PIECE, |piece, out| {
+        for (pinched, &(count, corner)) in out.iter_mut().zip(&corners[piece * PIECE..]) {
+            let mut joined = 0;
+            if count > 0 {
+                for_each_in_fan(corner, back, ahead, |_| joined += 1);
+            }
+            *pinched = joined < count;
         }
-        let fan = fan(corner, twins);
-        for &c in &fan {
-            fan_of_corner[c as usize] = true;
+    })?;
+    if pinched.contains(&true) {
+        let around = triangles_at(&surface.triangles, &pinched, execution);
+        let corners = Fans::of_points(&surface.triangles, &around, &pinched);
+        let fans = fans_to_part(&corners, &pinched, |_| (back, ahead));
+        part(surface, fans);
+    }
+    Ok(())
+}
+
+/// Gives each fan of triangles around a point a point of its own, where all are wound the same way
+/// and only the points `among` can be pinched.
+pub(crate) fn split_points_among(surface: &mut Surface, among: &[bool], execution: &Execution) {
+    let triangles = &surface.triangles;
+    let around = triangles_at(triangles, among, execution);
+    let corners = Fans::of_points(triangles, &around, among);
+    let end = |e: u32| ends(triangles, e).1;
+    let start_before = |e: u32| ends(triangles, previous(e)).0;
+    let fans = fans_to_part(&corners, among, |around: &[u32]| {
+        let find = move |is: &dyn Fn(u32) -> bool| {
+            let found = around.iter().copied().find(|&e| is(e));
+            found.unwrap_or(NONE)
+        };
+        (
+            move |at: u32| find(&|e| end(e) == start_before(at)),
+            move |at: u32| find(&|e| start_before(e) == end(at)),
+        )
+    });
+    part(surface, fans);
+}
+
+/// The fans that share a point with another that comes before, by their first corners: those around
+/// the points `among`. `steps` tells, given the corners of a point, how to get from one to the
+/// next that shares an edge with it, back and ahead.
+fn fans_to_part<'a, B: Fn(u32) -> u32, A: Fn(u32) -> u32>(
+    corners: &'a Fans,
+    among: &[bool],
+    steps: impl Fn(&'a [u32]) -> (B, A),
+) -> Vec<Vec<u32>> {
+    let mut fans = Vec::new();
+    for p in (0..among.len() as u32).filter(|&p| among[p as usize]) {
+        let corners = corners.of(p);
+        let (back, ahead) = steps(corners);
+        let mut seen: Vec<u32> = Vec::new();
+        while let Some(&corner) = corners.iter().find(|c| !seen.contains(c)) {
+            let first = seen.len();
+            for_each_in_fan(corner, &back, &ahead, |c| seen.push(c));
+            if first > 0 {
+                fans.push(seen[first..].to_vec());
+            }
         }
-        let p = ends(&surface.triangles, corner).0 as usize;
-        if !std::mem::replace(&mut claimed[p], true) {
-            continue;
-        }
+    }
+    fans.sort_unstable_by_key(|fan| fan[0]);
+    fans
+}
+
+/// Gives each of these fans a point of its own.
+fn part(surface: &mut Surface, fans: Vec<Vec<u32>>) {
+    for fan in fans {
+        let p = ends(&surface.triangles, fan[0]).0 as usize;
         let copy = surface.points.len() as u32;
         let place = moved_into(surface, p, &fan);
         surface.points.push(place);
@@ -136,30 +215,34 @@ fn split_points(surface: &mut Surface, twins: &[u32]) {
     }
 }
 
-/// The corners around the point at `corner` that are joined through shared edges.
-fn fan(corner: u32, twins: &[u32]) -> Vec<u32> {
-    let mut fan = vec![corner];
+/// Visits the corners around the point at `corner` that are joined through shared edges, given the
+/// steps from one to the next; [`NONE`] is a boundary.
+fn for_each_in_fan(
+    corner: u32,
+    back: impl Fn(u32) -> u32,
+    ahead: impl Fn(u32) -> u32,
+    mut visit: impl FnMut(u32),
+) {
+    visit(corner);
     let mut at = corner;
     // Leave through the edge that enters the point, until a boundary or the start.
     for _ in 0..MOST_AROUND {
-        at = twins[previous(at) as usize];
+        at = back(at);
         if at == NONE || at == corner {
             break;
         }
-        fan.push(at);
+        visit(at);
     }
     if at == NONE {
         at = corner;
         for _ in 0..MOST_AROUND {
-            let twin = twins[at as usize];
-            if twin == NONE {
+            at = ahead(at);
+            if at == NONE {
                 break;
             }
-            at = next(twin);
-            fan.push(at);
+            visit(at);
         }
     }
-    fan
 }
 
 /// The place of point p's copy for `fan`: a little towards the middle of the fan's triangles.

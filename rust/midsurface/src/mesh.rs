@@ -1,19 +1,21 @@
 //! The result: a triangle mesh, and the invariants it keeps.
 
+use rayon::prelude::*;
+
 use crate::components::DisjointSets;
 use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::flips::flip_edges;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::{Edges, Fans, NONE};
-use crate::manifold::{make_manifold, Surface};
+use crate::manifold::{self, make_manifold, Surface};
 use crate::normals::{normals, NORMAL_PASSES};
 use crate::polylines::Polylines;
 use crate::terraces::{self, flatten_terraces, LineOfPoint};
 use crate::zipper::Zipped;
 
 /// Passes over the mesh that [`Mesh::assemble`] makes, for its progress.
-pub(crate) const PASSES: usize = 3 + 2 * NORMAL_PASSES + terraces::PASSES;
+pub(crate) const PASSES: usize = 2 + manifold::PASSES + 2 * NORMAL_PASSES + terraces::PASSES;
 
 /// A triangle mesh: a 2-manifold with boundary, consistently wound in each connected piece.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -82,8 +84,7 @@ impl Mesh {
             source: (0..polylines.points.len() as u32).collect(),
             triangles: zipped.iter().map(|z| z.0).collect(),
         };
-        make_manifold(&mut surface);
-        execution.pass_done()?;
+        make_manifold(&mut surface, execution)?;
         flip_edges(&surface.points, &mut surface.triangles);
         execution.pass_done()?;
         turn_outward(&surface.points, &mut surface.triangles);
@@ -93,18 +94,15 @@ impl Mesh {
         let lines = lines_of_points(polylines, &surface.source);
         flatten_terraces(
             &mut surface.points,
-            &surface.triangles,
+            (&surface.triangles, &fans),
             &rough,
             &lines,
             terraces::PASSBAND,
             execution,
         )?;
-        let count = surface.triangles.len();
-        drop_degenerate(&mut surface, |p| p.map(|v| v as f32));
-        let fans = if surface.triangles.len() == count {
-            fans
-        } else {
-            Fans::new(&surface.triangles, surface.points.len())
+        let fans = match drop_degenerate(&mut surface, |p| p.map(|v| v as f32), execution)? {
+            true => Fans::new(&surface.triangles, surface.points.len()),
+            false => fans,
         };
         let line_of = line_of_points(polylines);
         let line = |t: &[u32; 3]| &polylines.lines[line_of[surface.source[t[0] as usize] as usize]];
@@ -238,20 +236,26 @@ fn is_degenerate(corners: [[f32; 3]; 3]) -> bool {
 /// Rounds of dropping triangles without area.
 const MENDINGS: usize = 4;
 
-/// Drops triangles that have no area in the mesh's own precision; `rounded` is what becomes of a
-/// point. Far from the origin it may be all of them.
-pub(crate) fn drop_degenerate(surface: &mut Surface, rounded: impl Fn(Vec3) -> [f32; 3]) {
-    for _ in 0..MENDINGS {
-        let count = surface.triangles.len();
-        let corner = |p: u32| rounded(surface.points[p as usize]);
-        surface
-            .triangles
-            .retain(|triangle| !is_degenerate(triangle.map(corner)));
-        if surface.triangles.len() == count {
-            break;
+/// Drops triangles that have no area in the mesh's own precision, and tells whether there were any;
+/// `rounded` is what becomes of a point. Far from the origin it may be all of them.
+pub(crate) fn drop_degenerate(
+    surface: &mut Surface,
+    rounded: impl Fn(Vec3) -> [f32; 3] + Sync,
+    execution: &mut Execution,
+) -> Result<bool> {
+    for mending in 0..MENDINGS {
+        let Surface {
+            points, triangles, ..
+        } = &mut *surface;
+        let corner = |p: u32| rounded(points[p as usize]);
+        let has_area = |triangle: &[u32; 3]| !is_degenerate(triangle.map(corner));
+        if execution.in_pool(|| triangles.par_iter().all(has_area)) {
+            return Ok(mending > 0);
         }
-        make_manifold(surface);
+        triangles.retain(has_area);
+        make_manifold(surface, execution)?;
     }
+    Ok(true)
 }
 
 /// The line each point of the polylines is on.

@@ -7,7 +7,7 @@
 //! number along the normals, neither shrinks nor bends what is curved.
 
 use crate::bricks::Batch;
-use crate::buckets::Buckets;
+use crate::buckets::{self, Buckets};
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, Vec3};
@@ -43,7 +43,7 @@ const PIECE: usize = 1024;
 /// Passes over the points that [`move_midway`] makes, for its progress.
 pub(crate) const PASSES: usize = {
     let rounds = MOVES[0].0 + MOVES[1].0 + MOVES[2].0 + MOVES[3].0;
-    MOVES.len() * (2 + NORMAL_ROUNDS) + rounds
+    buckets::PASSES + MOVES.len() * (2 + NORMAL_ROUNDS) + rounds
 };
 
 /// How far off each point is, and how much of that was seen there.
@@ -68,7 +68,7 @@ pub(crate) fn move_midway(
     execution: &mut Execution,
 ) -> Result<()> {
     let fans = Fans::new(&surface.triangles, surface.points.len());
-    let neighbours = fans.neighbours(&surface.triangles)?;
+    let neighbours = fans.neighbours(&surface.triangles, execution)?;
     for step in MOVES {
         move_once(label, surface, (&fans, &neighbours), step, execution)?;
     }

@@ -19,7 +19,7 @@ use crate::extension::extend;
 use crate::grid::{Grid, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
-use crate::manifold::{make_manifold, Surface};
+use crate::manifold::{self, make_manifold, Surface};
 use crate::mask::{self, Mask};
 use crate::mesh::{drop_degenerate, turn_outward, Mesh};
 use crate::midway::{self, move_midway, Label};
@@ -94,7 +94,7 @@ pub(crate) fn ridge_surface(
         let corner = surface.triangles[origin as usize][0];
         surface.source[corner as usize]
     };
-    let found = Surface {
+    let mut found = Surface {
         source: remeshed
             .origin
             .iter()
@@ -103,27 +103,42 @@ pub(crate) fn ridge_surface(
         points: remeshed.points,
         triangles: remeshed.triangles,
     };
+    keep_within(grid, &mut found.points);
     let passes = 1 + 2 * NORMAL_PASSES + terraces::PASSES;
     execution.stage("Flattening terraces", 0.94, 1.0, passes)?;
-    let mut found = sound(found, grid)?;
-    flatten(&mut found, wanted, execution)?;
-    let found = sound(found, grid)?;
-    append(batch, (&distance, &mask), grid, found, mesh, execution)
+    drop_degenerate(&mut found, in_mesh(grid), execution)?;
+    let mut found = found.compact()?;
+    let fans = Fans::new(&found.triangles, found.points.len());
+    flatten(&mut found, &fans, wanted, execution)?;
+    keep_within(grid, &mut found.points);
+    let fans = if drop_degenerate(&mut found, in_mesh(grid), execution)? {
+        found = found.compact()?;
+        Fans::new(&found.triangles, found.points.len())
+    } else {
+        fans
+    };
+    append(
+        batch,
+        (&distance, &mask),
+        grid,
+        (found, fans),
+        mesh,
+        execution,
+    )
 }
 
 /// Removes the terraces of sheets nearly parallel to a lattice plane; rims stay.
-fn flatten(surface: &mut Surface, edge: f64, execution: &mut Execution) -> Result<()> {
+fn flatten(surface: &mut Surface, fans: &Fans, edge: f64, execution: &mut Execution) -> Result<()> {
     let point = LineOfPoint {
         edge,
         room: f64::INFINITY,
         ..LineOfPoint::default()
     };
     let points = vec![point; surface.points.len()];
-    let fans = Fans::new(&surface.triangles, surface.points.len());
-    let normals = normals(&surface.points, &surface.triangles, &fans, execution)?;
+    let normals = normals(&surface.points, &surface.triangles, fans, execution)?;
     flatten_terraces(
         &mut surface.points,
-        &surface.triangles,
+        (&surface.triangles, fans),
         &normals,
         &points,
         PASSBAND,
@@ -131,18 +146,21 @@ fn flatten(surface: &mut Surface, edge: f64, execution: &mut Execution) -> Resul
     )
 }
 
-/// Puts points that the remesher moved beyond the border of the volume back onto it, and drops
-/// triangles without area: they are left where two rims meet.
-fn sound(mut surface: Surface, grid: &Grid) -> Result<Surface> {
+/// Puts points that were moved beyond the border of the volume back onto it.
+fn keep_within(grid: &Grid, points: &mut [Vec3]) {
     let h = grid.work_spacing();
-    for p in &mut surface.points {
+    for p in points {
         *p = std::array::from_fn(|a| p[a].clamp(0.0, (grid.dimensions[a] as f64 - 1.0) * h[a]));
     }
-    drop_degenerate(&mut surface, |p| {
+}
+
+/// What becomes of a point in the mesh.
+fn in_mesh(grid: &Grid) -> impl Fn(Vec3) -> [f32; 3] + Sync + '_ {
+    let h = grid.work_spacing();
+    move |p| {
         let voxel = std::array::from_fn(|a| p[a] / h[a]);
         grid.world(voxel).map(|v| v as f32)
-    });
-    surface.compact()
+    }
 }
 
 /// The sheets of a batch, from the profile's crest to beyond the rims.
@@ -180,18 +198,18 @@ fn cut_surface(
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<(Surface, Vec<f32>)> {
-    execution.stage("Joining sheets", 0.37, 0.45, 1 + contour::PASSES)?;
+    let passes = contour::PASSES + manifold::PASSES;
+    execution.stage("Joining sheets", 0.37, 0.45, passes)?;
     let mut surface = contour::contour(batch, &sheets, h, execution)?;
     check_count("triangles", surface.triangles.len(), 3)?;
-    make_manifold(&mut surface);
-    execution.pass_done()?;
+    make_manifold(&mut surface, execution)?;
     execution.stage("Trimming at rims", 0.45, 0.49, 2 + rim::PASSES)?;
     let fraction = sheet_fraction(batch, &sheets, distance, h, execution)?;
     drop(sheets);
     let at_points = values(batch, &surface, &fraction, h, execution)?;
-    trim(&mut surface, &at_points)?;
+    trim(&mut surface, &at_points, execution)?;
     drop_scraps(&mut surface);
-    weld(&mut surface)?;
+    weld(&mut surface, execution)?;
     execution.pass_done()?;
     Ok((surface.compact()?, fraction))
 }
@@ -225,12 +243,11 @@ fn append(
     batch: &Batch,
     (distance, mask): (&[f32], &Mask),
     grid: &Grid,
-    found: Surface,
+    (found, fans): (Surface, Fans),
     mesh: &mut Mesh,
     execution: &mut Execution,
 ) -> Result<()> {
     let h = grid.work_spacing();
-    let fans = Fans::new(&found.triangles, found.points.len());
     let normals = normals(&found.points, &found.triangles, &fans, execution)?;
     let mut thickness: Vec<f32> = zeros(found.points.len())?;
     execution.fill(&mut thickness, PIECE, |piece, out| {

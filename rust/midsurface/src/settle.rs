@@ -9,7 +9,7 @@ use crate::bricks::{Batch, BRICK, EDGE};
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::Vec3;
-use crate::sheet::{dot, Sheet};
+use crate::sheet::{by_offset, dot, Sheet};
 
 /// Neighbours that speak of the same sheet: normals within this cosine, offsets within this many
 /// work units of the one in the middle.
@@ -69,20 +69,22 @@ fn agreed(sheets: &[Sheet], at: usize, h: Vec3) -> Sheet {
             }
         }
     }
-    let said = &mut said[..count];
-    said.sort_unstable_by(|a, b| a[3].total_cmp(&b[3]));
+    let said = &said[..count];
+    let mut order: [u64; 7] = std::array::from_fn(|i| said.get(i).map_or(0, |s| by_offset(s, i)));
+    let order = &mut order[..count];
+    order.sort_unstable();
+    let said = |i: usize| &said[order[i] as u32 as usize];
     // The middle one of them, so that a single voxel that is wrong is overruled.
-    let middle = 0.5 * (said[(count - 1) / 2][3] + said[count / 2][3]);
+    let middle = 0.5 * (said((count - 1) / 2)[3] + said(count / 2)[3]);
     let mut sum = [0.0; 4];
     let mut agreed = 0.0;
-    for sheet in said
-        .iter()
-        .filter(|sheet| (sheet[3] - middle).abs() <= NEAR)
-    {
-        for (sum, v) in sum.iter_mut().zip(sheet) {
-            *sum += v;
+    for sheet in (0..count).map(said) {
+        if (sheet[3] - middle).abs() <= NEAR {
+            for (sum, v) in sum.iter_mut().zip(sheet) {
+                *sum += v;
+            }
+            agreed += 1.0;
         }
-        agreed += 1.0;
     }
     let length = dot([sum[0], sum[1], sum[2]], [sum[0], sum[1], sum[2]]).sqrt();
     if agreed == 0.0 || length == 0.0 {

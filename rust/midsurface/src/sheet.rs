@@ -33,6 +33,15 @@ pub(crate) fn normal(sheet: &Sheet) -> Option<Vec3> {
     (*sheet != [0.0; 4]).then_some([x, y, z])
 }
 
+/// A number that sorts as the sheets' offsets do, and where they are the same by their `index`,
+/// which is its low half.
+pub(crate) fn by_offset(sheet: &Sheet, index: usize) -> u64 {
+    let bits = sheet[3].to_bits();
+    // Negative numbers come first, in reverse.
+    let sortable = bits ^ if bits >> 31 == 1 { u32::MAX } else { 1 << 31 };
+    u64::from(sortable) << 32 | index as u64
+}
+
 /// Passes over all bricks that [`sheets`] and [`unshrink`] make, for their progress.
 pub(crate) const PASSES: usize = 24;
 

@@ -9,11 +9,11 @@
 //! lie far apart; on a boundary it follows the boundary. A lower passband would remove longer
 //! terraces, too, but takes the bends of real membranes for such.
 
-use crate::buckets::Buckets;
-use crate::error::{reserved, zeros, Result};
+use crate::buckets::{self, Buckets};
+use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, length, sub, unit, Vec3};
-use crate::halfedge::{ends, Edges, NONE};
+use crate::halfedge::{ends, Fans};
 
 /// End of the passband among K's eigenvalues, 0 to 2, for lines in slices: waves of about fourteen
 /// edges.
@@ -29,7 +29,7 @@ const RINGS: u8 = 6;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 /// Passes over the points that [`flatten_terraces`] makes, for its progress.
-pub(crate) const PASSES: usize = 2 * DEGREE + SMOOTH_NORMALS + 1;
+pub(crate) const PASSES: usize = 2 * DEGREE + SMOOTH_NORMALS + 2 + buckets::PASSES;
 
 /// What the filter knows of a point and the line that it is on.
 #[derive(Debug, Clone, Copy, Default)]
@@ -43,19 +43,18 @@ pub(crate) struct LineOfPoint {
     pub room: f64,
 }
 
-/// Neighbours of every point, with their weights in K in the same order. A point on a boundary has
+/// Neighbours of every point, with their weights in K. A point on a boundary has
 /// neighbours along the boundary only.
 struct Neighbours {
-    list: Buckets<u32>,
-    weights: Vec<f32>,
+    list: Buckets<(u32, f32)>,
     boundary: Vec<bool>,
 }
 
-/// Smooths the points of a manifold along their `normals`. Points on a boundary stay in their slice.
-/// `lines` tells the line of every point.
+/// Smooths the points of a manifold, given by its triangles and their fans, along their `normals`.
+/// Points on a boundary stay in their slice. `lines` tells the line of every point.
 pub(crate) fn flatten_terraces(
     points: &mut [Vec3],
-    triangles: &[[u32; 3]],
+    (triangles, fans): (&[[u32; 3]], &Fans),
     normals: &[Vec3],
     lines: &[LineOfPoint],
     passband: f64,
@@ -64,7 +63,7 @@ pub(crate) fn flatten_terraces(
     if triangles.is_empty() {
         return Ok(());
     }
-    let neighbours = Neighbours::new(triangles, points, lines)?;
+    let neighbours = Neighbours::new((triangles, fans), points, lines, execution)?;
     let moves = moves(
         points,
         normals,
@@ -183,44 +182,49 @@ fn sinc_weights(passband: f64) -> Vec<f64> {
 }
 
 impl Neighbours {
-    fn new(triangles: &[[u32; 3]], points: &[Vec3], lines: &[LineOfPoint]) -> Result<Self> {
-        let twins = Edges::new(triangles, points.len()).twins();
-        let half_edges = || (0..twins.len()).map(|e| (ends(triangles, e as u32), twins[e] == NONE));
-        let mut boundary = vec![false; points.len()];
-        for ((a, b), outer) in half_edges() {
-            boundary[a as usize] |= outer;
-            boundary[b as usize] |= outer;
-        }
-        let is_inner = |p: u32| !boundary[p as usize];
-        // Within the surface every edge has two half-edges, one each way; on a boundary one.
-        let links = || {
-            half_edges().flat_map(|((a, b), outer)| {
-                let there = (outer || is_inner(a)).then_some((a, b));
-                there.into_iter().chain(outer.then_some((b, a)))
-            })
+    fn new(
+        (triangles, fans): (&[[u32; 3]], &Fans),
+        points: &[Vec3],
+        lines: &[LineOfPoint],
+        execution: &mut Execution,
+    ) -> Result<Self> {
+        let mut boundary: Vec<bool> = zeros(points.len())?;
+        execution.fill(&mut boundary, PIECE, |piece, out| {
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = fans.is_boundary(triangles, (piece * PIECE + i) as u32);
+            }
+        })?;
+        let weight = |share: f64, a: usize, b: u32| {
+            let d = sub(points[b as usize], points[a]);
+            (
+                b,
+                (share * (lines[a].edge.powi(2) / dot(d, d)).min(1.0)) as f32,
+            )
         };
-        let list = Buckets::new(points.len(), links);
-        let mut weights: Vec<f32> = reserved(list.all().len())?;
-        for a in 0..points.len() {
-            // Along a line a bend shows twice as much as on average over all directions.
-            let share = if boundary[a] { 0.5 } else { 1.0 } / list.of(a).len() as f64;
-            weights.extend(list.of(a).iter().map(|&b| {
-                let d = sub(points[b as usize], points[a]);
-                (share * (lines[a].edge.powi(2) / dot(d, d)).min(1.0)) as f32
-            }));
-        }
-        Ok(Self {
-            list,
-            weights,
-            boundary,
-        })
+        let add = |p: usize, list: &mut Vec<(u32, f32)>| {
+            if boundary[p] {
+                // Along a line a bend shows twice as much as on average over all directions.
+                let beside = fans.along_boundary(triangles, p as u32);
+                let share = 0.5 / beside.clone().count() as f64;
+                list.extend(beside.map(|q| weight(share, p, q)));
+            } else {
+                let leaving = fans.of(p as u32);
+                let share = 1.0 / leaving.len() as f64;
+                list.extend(
+                    leaving
+                        .iter()
+                        .map(|&e| weight(share, p, ends(triangles, e).1)),
+                );
+            }
+        };
+        let list = Buckets::fill(points.len(), 3 * triangles.len(), add, execution)?;
+        Ok(Self { list, boundary })
     }
 
     /// The neighbours of point p with their weights.
     fn of(&self, p: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let weights = &self.weights[self.list.range(p)];
-        let list = self.list.of(p).iter().zip(weights);
-        list.map(|(&q, &w)| (q as usize, f64::from(w)))
+        let list = self.list.of(p).iter();
+        list.map(|&(q, w)| (q as usize, f64::from(w)))
     }
 
     /// How much higher than at a point a field is at its neighbours: −K of it.

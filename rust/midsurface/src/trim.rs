@@ -8,9 +8,10 @@
 
 use crate::components::DisjointSets;
 use crate::error::{reserved, zeros, Result};
+use crate::execution::Execution;
 use crate::grid::{along, sub, Vec3};
 use crate::halfedge::{ends, Edges};
-use crate::manifold::{make_manifold, Surface};
+use crate::manifold::{split_points_among, Surface};
 
 /// The sheet fraction at a rim.
 const RIM: f64 = 0.5;
@@ -31,13 +32,17 @@ enum Side {
 }
 
 /// Cuts `surface` where `fraction`, given at its points, is ½.
-pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
+pub(crate) fn trim(surface: &mut Surface, fraction: &[f64], execution: &Execution) -> Result<()> {
     let above = above(surface, fraction);
     if above.iter().all(|&a| a) {
         return Ok(());
     }
     let triangles = std::mem::take(&mut surface.triangles);
-    let edges = Edges::new(&triangles, surface.points.len());
+    // Only these are cut; those with the same edges are among them.
+    let mixed = |t: &[u32; 3]| t.iter().any(|&p| above[p as usize] != above[t[0] as usize]);
+    let numbers = 0..triangles.len() as u32;
+    let mixed: Vec<u32> = numbers.filter(|&t| mixed(&triangles[t as usize])).collect();
+    let edges = Edges::of_triangles(&triangles, &mixed, surface.points.len());
     let mut side: Vec<Side> = reserved(above.len())?;
     side.extend(
         above
@@ -45,7 +50,7 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
             .map(|a| if *a { Side::Kept } else { Side::Cut }),
     );
     snap(surface, fraction, &edges, &mut side)?;
-    let mut cut = vec![0u32; 3 * triangles.len()];
+    let mut cut: Vec<u32> = zeros(3 * triangles.len())?;
     for (a, b, group) in edges.groups() {
         let [p, q] = [a, b].map(|p| p as usize);
         if matches!(
@@ -62,17 +67,29 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
             }
         }
     }
-    for t in 0..triangles.len() {
-        keep(
-            3 * t as u32,
-            &side,
-            &cut,
-            &triangles,
-            &mut surface.triangles,
-        );
+    surface.triangles = reserved(triangles.len() + mixed.len())?;
+    for (t, triangle) in triangles.iter().enumerate() {
+        if triangle.iter().all(|&p| side[p as usize] == Side::Kept) {
+            surface.triangles.push(*triangle);
+        } else {
+            keep(
+                3 * t as u32,
+                &side,
+                &cut,
+                &triangles,
+                &mut surface.triangles,
+            );
+        }
     }
     // Where two cuts met in a point.
-    make_manifold(surface);
+    let mut at_cut = vec![true; surface.points.len()];
+    at_cut[..above.len()].fill(false);
+    for &t in &mixed {
+        for p in triangles[t as usize] {
+            at_cut[p as usize] = true;
+        }
+    }
+    split_points_among(surface, &at_cut, execution);
     Ok(())
 }
 
@@ -114,20 +131,19 @@ fn snap(surface: &mut Surface, fraction: &[f64], edges: &Edges, side: &mut [Side
 /// Whether each point stays.
 fn above(surface: &Surface, fraction: &[f64]) -> Vec<bool> {
     let mut above: Vec<bool> = fraction.iter().map(|f| *f >= RIM).collect();
+    let certain = |f: &f64| *f >= SHEET || *f <= HOLE;
+    let mut certain: Vec<bool> = fraction.iter().map(certain).collect();
     let mut regions = DisjointSets::new(above.len());
-    for t in &surface.triangles {
-        for (p, q) in [(t[0], t[1]), (t[1], t[2])] {
-            if above[p as usize] == above[q as usize] {
-                regions.join(p as usize, q as usize);
+    for &[a, b, c] in &surface.triangles {
+        for [p, q] in [[a, b], [b, c], [a, c]].map(|edge| edge.map(|p| p as usize)) {
+            // Whatever is certain need not be told so by its neighbours.
+            if above[p] == above[q] && !(certain[p] && certain[q]) {
+                regions.join(p, q);
             }
         }
-        if above[t[0] as usize] == above[t[2] as usize] {
-            regions.join(t[0] as usize, t[2] as usize);
-        }
     }
-    let mut certain = vec![false; above.len()];
-    for (p, f) in fraction.iter().enumerate() {
-        certain[regions.find(p)] |= if above[p] { *f >= SHEET } else { *f <= HOLE };
+    for p in 0..above.len() {
+        certain[regions.find(p)] |= certain[p];
     }
     for p in 0..above.len() {
         above[p] ^= !certain[regions.find(p)];

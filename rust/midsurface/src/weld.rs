@@ -5,9 +5,12 @@
 //! short edges are drawn together, the shortest first. The link condition (Dey et al. 1999) keeps
 //! the topology, and no triangle may turn over; an edge for which either fails stays.
 
+use rayon::prelude::*;
+
 use crate::error::{reserved, zeros, Result};
+use crate::execution::Execution;
 use crate::grid::{along, cross, dot, length, squared_distance, sub, Vec3};
-use crate::halfedge::{ends, next, Fans, NONE};
+use crate::halfedge::{ends, next, triangles_at, Fans, NONE};
 use crate::manifold::Surface;
 
 /// Edges shorter than this are drawn together, work units.
@@ -18,13 +21,13 @@ const ROUNDS: usize = 6;
 const TURNED: f64 = 0.3;
 
 /// Draws the short edges of a consistently wound 2-manifold together.
-pub(crate) fn weld(surface: &mut Surface) -> Result<()> {
+pub(crate) fn weld(surface: &mut Surface, execution: &mut Execution) -> Result<()> {
     for _ in 0..ROUNDS {
-        let short = short_edges(surface);
+        let short = execution.in_pool(|| short_edges(surface));
         if short.is_empty() {
             break;
         }
-        let pairs = pairs(surface, &fans_near(surface, &short)?, short)?;
+        let pairs = pairs(surface, &fans_near(surface, &short, execution)?, short)?;
         if pairs.is_empty() {
             break;
         }
@@ -50,15 +53,18 @@ fn short_edges(surface: &Surface) -> Vec<u32> {
         let (a, b) = ends(&surface.triangles, e);
         squared_distance(surface.points[a as usize], surface.points[b as usize])
     };
-    let all = (0..3 * surface.triangles.len() as u32).map(|e| (squared(e), e));
-    let mut short: Vec<(f64, u32)> = all.filter(|(d, _)| *d < SHORT * SHORT).collect();
+    let all = (0..3 * surface.triangles.len() as u32).into_par_iter();
+    let mut short: Vec<(f64, u32)> = all
+        .map(|e| (squared(e), e))
+        .filter(|(d, _)| *d < SHORT * SHORT)
+        .collect();
     short.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     short.into_iter().map(|(_, e)| e).collect()
 }
 
 /// The fans of the ends of short edges, which are few, and of the points next to them; other points
 /// have none.
-fn fans_near(surface: &Surface, short: &[u32]) -> Result<Fans> {
+fn fans_near(surface: &Surface, short: &[u32], execution: &Execution) -> Result<Fans> {
     let triangles = &surface.triangles;
     let mut is_end: Vec<bool> = zeros(surface.points.len())?;
     for &e in short {
@@ -66,12 +72,13 @@ fn fans_near(surface: &Surface, short: &[u32]) -> Result<Fans> {
         (is_end[a as usize], is_end[b as usize]) = (true, true);
     }
     let mut near = is_end.clone();
-    for t in triangles {
-        if t.iter().any(|&p| is_end[p as usize]) {
-            t.iter().for_each(|&p| near[p as usize] = true);
+    for t in triangles_at(triangles, &is_end, execution) {
+        for p in triangles[t as usize] {
+            near[p as usize] = true;
         }
     }
-    Ok(Fans::of_points(triangles, &near))
+    let around = triangles_at(triangles, &near, execution);
+    Ok(Fans::of_points(triangles, &around, &near))
 }
 
 /// Points to be drawn into others and where to, none of them near another's triangles.
@@ -156,6 +163,7 @@ fn keeps_shape(surface: &Surface, fans: &Fans, points: [u32; 2], place: Vec3) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Quiet;
 
     /// A lattice of squares, each cut in two, on a plane or bent to a closed ring.
     fn lattice(columns: u32, rows: u32, place: impl Fn(u32, u32) -> Vec3) -> Surface {
@@ -177,6 +185,11 @@ mod tests {
         }
     }
 
+    fn weld_all(surface: &mut Surface) {
+        let mut quiet = Quiet::default();
+        weld(surface, &mut Execution::new(2, &mut quiet).unwrap()).unwrap();
+    }
+
     #[test]
     fn points_that_nearly_coincide_become_one() {
         let mut surface = lattice(4, 4, |i, j| [f64::from(i), f64::from(j), 0.0]);
@@ -184,7 +197,7 @@ mod tests {
         surface.points[12] = [2.9, 2.0, 0.0];
         surface.points[1] = [1.95, 0.0, 0.0];
         let before = surface.triangles.len();
-        weld(&mut surface).unwrap();
+        weld_all(&mut surface);
         assert_eq!(surface.triangles.len(), before - 2 - 1);
         let corners = surface.triangles.iter().flatten();
         let on_boundary = |p: &&u32| surface.points[**p as usize][1] == 0.0;
@@ -198,7 +211,7 @@ mod tests {
     fn a_narrow_neck_is_not_drawn_together() {
         // Both ends of its short edges lie on the boundary.
         let mut surface = lattice(6, 1, |i, j| [f64::from(i), 0.1 * f64::from(j), 0.0]);
-        weld(&mut surface).unwrap();
+        weld_all(&mut surface);
         // At its two ends it may get shorter by a triangle.
         assert!(surface.triangles.len() >= 12 - 2);
     }

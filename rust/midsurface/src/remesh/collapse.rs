@@ -21,16 +21,17 @@ const SHARP: f64 = 0.2;
 /// Collapses edges that are too short, where that is possible.
 pub(super) fn collapse_short_edges(patch: &mut Patch) {
     let mut ring = Vec::new();
-    let shortest = (0..patch.twins.len() as u32)
+    let mut shares: Vec<f64> = (0..patch.twins.len() as u32)
         .map(|e| squared_share(patch, e))
-        .fold(f64::INFINITY, f64::min);
+        .collect();
+    let shortest = shares.iter().copied().fold(f64::INFINITY, f64::min);
     for share in SWEEPS {
         let limit = (share * SHORT).powi(2);
         if shortest >= limit {
             continue;
         }
         for e in 0..patch.twins.len() as u32 {
-            if squared_share(patch, e) < limit {
+            if shares[e as usize] < limit {
                 let (a, b) = (patch.origin(e), patch.end(e));
                 // The end with fewer edges goes.
                 let order = if patch.valence[a as usize] <= patch.valence[b as usize] {
@@ -40,13 +41,28 @@ pub(super) fn collapse_short_edges(patch: &mut Patch) {
                 };
                 for (v, u) in order {
                     if may_collapse(patch, e, v, u, LONG, &mut ring) {
+                        let changed = changed_edges(patch, e, &ring);
                         patch.collapse(e, v, u, &ring);
+                        for h in changed {
+                            shares[h as usize] = squared_share(patch, h);
+                        }
                         break;
                     }
                 }
             }
         }
     }
+}
+
+/// The half-edges that change if half-edge e is collapsed, one of whose ends `ring` leaves: those of
+/// the triangles around, and those across, two of which become one edge.
+fn changed_edges(patch: &Patch, e: u32, ring: &[u32]) -> Vec<u32> {
+    let sides = [e, patch.twin(e)].into_iter().filter(|&h| h != NONE);
+    let around = ring.iter().copied().chain(sides);
+    let own = around.flat_map(|h| [h, next(h), previous(h)]);
+    own.flat_map(|h| [h, patch.twin(h)])
+        .filter(|&h| h != NONE)
+        .collect()
 }
 
 /// Square of an edge's length over the one wanted; infinite for an edge that may not be collapsed,

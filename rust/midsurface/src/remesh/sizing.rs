@@ -10,7 +10,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::reference::Reference;
-use crate::buckets::Buckets;
+use crate::buckets::{self, Buckets};
 use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, length, sub, Vec3};
@@ -30,7 +30,7 @@ const SMOOTHING: usize = 3;
 /// Points handed to a worker at a time.
 const PIECE: usize = 4096;
 /// Passes over the reference that [`sizes`] makes, for its progress.
-pub(super) const PASSES: usize = SMOOTHING + 1;
+pub(super) const PASSES: usize = buckets::PASSES + SMOOTHING + 1;
 
 /// The edge length wanted at every point of the reference.
 pub(super) fn sizes(
@@ -39,7 +39,7 @@ pub(super) fn sizes(
     edge_length: f64,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
-    let neighbours = &fans.neighbours(reference.triangles)?;
+    let neighbours = &fans.neighbours(reference.triangles, execution)?;
     let mut normals: Vec<Vec3> = reserved(reference.normals.len())?;
     normals.extend(reference.normals.iter().map(|n| n.map(f64::from)));
     let normals = average_normals(normals, neighbours, SMOOTHING, execution)?;
