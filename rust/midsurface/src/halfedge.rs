@@ -12,6 +12,8 @@ pub(crate) const NONE: u32 = u32::MAX;
 
 /// Half-edges handed to a worker at a time.
 const PIECE: usize = 4096;
+/// Half-edges around a point that are looked through one by one; more are sorted.
+const MOST_SEARCHED: usize = 64;
 /// Passes over the half-edges that [`twins`] makes, for its progress.
 pub(crate) const TWIN_PASSES: usize = 1;
 
@@ -77,14 +79,23 @@ pub(crate) fn twins(
     points: usize,
     execution: &mut Execution,
 ) -> Result<Vec<u32>> {
-    let edges = Buckets::new(points, || half_edges(triangles).map(by_smaller_end));
+    let mut edges = Buckets::new(points, || half_edges(triangles).map(by_smaller_end));
+    for p in 0..points {
+        if edges.of(p).len() > MOST_SEARCHED {
+            edges.of_mut(p).sort_unstable();
+        }
+    }
     let mut twins = zeros(3 * triangles.len())?;
     execution.fill(&mut twins, PIECE, |piece, out| {
         for (i, twin) in out.iter_mut().enumerate() {
             let e = (piece * PIECE + i) as u32;
             let (a, b) = ends(triangles, e);
-            let of_edge = edges.of(a.min(b) as usize).iter();
-            let mut others = of_edge.filter(|&&(q, f)| q == a.max(b) && f != e);
+            let mut around = edges.of(a.min(b) as usize);
+            if around.len() > MOST_SEARCHED {
+                around = &around[around.partition_point(|(q, _)| *q < a.max(b))..];
+                around = &around[..around.partition_point(|(q, _)| *q == a.max(b))];
+            }
+            let mut others = around.iter().filter(|&&(q, f)| q == a.max(b) && f != e);
             *twin = match (others.next(), others.next()) {
                 (Some(&(_, f)), None) => f,
                 _ => NONE,
@@ -176,29 +187,6 @@ impl Fans {
         let corner = |e: u32| ends(triangles, e).0;
         let half_edges = || self.of(p).iter().copied();
         half_edges().any(|e| half_edges().all(|f| corner(previous(f)) != corner(next(e))))
-    }
-
-    /// The points next to one on the boundary of a consistently wound manifold, along the boundary,
-    /// in the order of their half-edges.
-    pub fn along_boundary(
-        &self,
-        triangles: &[[u32; 3]],
-        p: u32,
-    ) -> impl Iterator<Item = u32> + Clone {
-        let (to, from) = (
-            |e: u32| ends(triangles, e).1,
-            |e: u32| ends(triangles, previous(e)).0,
-        );
-        let half_edges = || self.of(p).iter().copied();
-        let ahead = half_edges().find(|&e| half_edges().all(|f| from(f) != to(e)));
-        let back = half_edges().find(|&e| half_edges().all(|f| to(f) != from(e)));
-        let (ahead, back) = (
-            ahead.map(|e| (e, to(e))),
-            back.map(|e| (previous(e), from(e))),
-        );
-        let mut both = [ahead, back];
-        both.sort_unstable();
-        both.into_iter().flatten().map(|(_, q)| q)
     }
 
     /// The half-edges that leave a point.

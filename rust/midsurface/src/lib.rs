@@ -47,6 +47,7 @@ mod centre;
 mod components;
 mod contour;
 mod crest;
+mod crossings;
 mod distance;
 mod eigen;
 mod ends;

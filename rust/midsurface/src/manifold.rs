@@ -188,12 +188,18 @@ fn fans_to_part<'a, B: Fn(u32) -> u32, A: Fn(u32) -> u32>(
     for p in (0..among.len() as u32).filter(|&p| among[p as usize]) {
         let corners = corners.of(p);
         let (back, ahead) = steps(corners);
-        let mut seen: Vec<u32> = Vec::new();
-        while let Some(&corner) = corners.iter().find(|c| !seen.contains(c)) {
-            let first = seen.len();
-            for_each_in_fan(corner, &back, &ahead, |c| seen.push(c));
-            if first > 0 {
-                fans.push(seen[first..].to_vec());
+        let mut seen = vec![false; corners.len()];
+        for (i, &corner) in corners.iter().enumerate() {
+            if seen[i] {
+                continue;
+            }
+            let mut fan = Vec::new();
+            for_each_in_fan(corner, &back, &ahead, |c| fan.push(c));
+            for c in &fan {
+                seen[corners.partition_point(|other| other < c)] = true;
+            }
+            if i > 0 {
+                fans.push(fan);
             }
         }
     }

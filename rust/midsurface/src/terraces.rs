@@ -13,7 +13,7 @@ use crate::buckets::{self, Buckets};
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, length, sub, unit, Vec3};
-use crate::halfedge::{ends, Fans};
+use crate::halfedge::{self, ends, previous, Fans, NONE};
 
 /// End of the passband among K's eigenvalues, 0 to 2, for lines in slices: waves of about fourteen
 /// edges.
@@ -28,8 +28,10 @@ const SMOOTH_NORMALS: usize = 4;
 const RINGS: u8 = 6;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
+/// Passes that finding the neighbours makes.
+const PREPARING: usize = halfedge::TWIN_PASSES + buckets::PASSES;
 /// Passes over the points that [`flatten_terraces`] makes, for its progress.
-pub(crate) const PASSES: usize = 2 * DEGREE + SMOOTH_NORMALS + 2 + buckets::PASSES;
+pub(crate) const PASSES: usize = 2 * DEGREE + SMOOTH_NORMALS + 2 + PREPARING;
 
 /// What the filter knows of a point and the line that it is on.
 #[derive(Debug, Clone, Copy, Default)]
@@ -188,10 +190,13 @@ impl Neighbours {
         lines: &[LineOfPoint],
         execution: &mut Execution,
     ) -> Result<Self> {
+        let twins = halfedge::twins(triangles, points.len(), execution)?;
+        let is_outer = |e: &u32| twins[*e as usize] == NONE;
         let mut boundary: Vec<bool> = zeros(points.len())?;
         execution.fill(&mut boundary, PIECE, |piece, out| {
             for (i, out) in out.iter_mut().enumerate() {
-                *out = fans.is_boundary(triangles, (piece * PIECE + i) as u32);
+                let mut leaving = fans.of((piece * PIECE + i) as u32).iter();
+                *out = leaving.any(|&e| is_outer(&e) || is_outer(&previous(e)));
             }
         })?;
         let weight = |share: f64, a: usize, b: u32| {
@@ -204,9 +209,15 @@ impl Neighbours {
         let add = |p: usize, list: &mut Vec<(u32, f32)>| {
             if boundary[p] {
                 // Along a line a bend shows twice as much as on average over all directions.
-                let beside = fans.along_boundary(triangles, p as u32);
-                let share = 0.5 / beside.clone().count() as f64;
-                list.extend(beside.map(|q| weight(share, p, q)));
+                let mut beside: Vec<(u32, u32)> = Vec::new();
+                for &e in fans.of(p as u32) {
+                    let ahead = (e, ends(triangles, e).1);
+                    let back = (previous(e), ends(triangles, previous(e)).0);
+                    beside.extend([ahead, back].into_iter().filter(|(e, _)| is_outer(e)));
+                }
+                beside.sort_unstable();
+                let share = 0.5 / beside.len() as f64;
+                list.extend(beside.iter().map(|&(_, q)| weight(share, p, q)));
             } else {
                 let leaving = fans.of(p as u32);
                 let share = 1.0 / leaving.len() as f64;
