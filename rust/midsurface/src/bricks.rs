@@ -92,17 +92,18 @@ impl Directory {
     }
 
     /// Position in `index` of a brick within the bounding box.
-    fn cell(&self, brick: [usize; 3]) -> usize {
-        let [x, y, z]: [usize; 3] = std::array::from_fn(|a| brick[a] - self.low[a]);
-        (z * self.extent[1] + y) * self.extent[0] + x
+    #[inline]
+    fn cell(&self, [x, y, z]: [usize; 3]) -> usize {
+        let [first_x, first_y, first_z] = self.low;
+        ((z - first_z) * self.extent[1] + y - first_y) * self.extent[0] + x - first_x
     }
 
     /// Index of the brick at a place, `None` where the part has none.
     #[inline]
     pub fn brick(&self, place: [usize; 3]) -> Option<usize> {
-        let inside =
-            (0..3).all(|a| place[a] >= self.low[a] && place[a] - self.low[a] < self.extent[a]);
-        if !inside {
+        // What is below the first brick wraps round to beyond the last.
+        let is_inside = |a: usize| place[a].wrapping_sub(self.low[a]) < self.extent[a];
+        if !(is_inside(0) && is_inside(1) && is_inside(2)) {
             return None;
         }
         let index = self.index[self.cell(place)];
@@ -123,19 +124,18 @@ impl Directory {
 
     /// Entry of a voxel in the batch's arrays, `None` where the part has no brick.
     #[inline]
-    pub fn entry(&self, voxel: [usize; 3]) -> Option<usize> {
-        let brick = self.brick(voxel.map(|v| v / EDGE))?;
-        let [x, y, z] = voxel.map(|v| v % EDGE);
-        Some(brick * BRICK + z * LAYER + y * EDGE + x)
+    pub fn entry(&self, [x, y, z]: [usize; 3]) -> Option<usize> {
+        let brick = self.brick([x / EDGE, y / EDGE, z / EDGE])?;
+        Some(brick * BRICK + z % EDGE * LAYER + y % EDGE * EDGE + x % EDGE)
     }
 
     /// Like [`Self::entry`], for a voxel that may lie outside the volume.
     #[inline]
-    pub fn entry_at(&self, voxel: [isize; 3]) -> Option<usize> {
-        if voxel.iter().any(|&v| v < 0) {
+    pub fn entry_at(&self, [x, y, z]: [isize; 3]) -> Option<usize> {
+        if x < 0 || y < 0 || z < 0 {
             return None;
         }
-        self.entry(voxel.map(|v| v as usize))
+        self.entry([x as usize, y as usize, z as usize])
     }
 
     /// The bricks (as indices) of brick layer `bz`, which follow each other.

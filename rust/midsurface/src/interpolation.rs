@@ -83,8 +83,9 @@ impl Sampler<'_> {
     }
 
     /// The field's value at the voxel nearest to a continuous voxel index; 0 where it has none.
-    pub fn nearest(&self, voxel: Vec3) -> f64 {
-        let entry = self.directory.entry_at(voxel.map(round));
+    #[inline]
+    pub fn nearest(&self, [x, y, z]: Vec3) -> f64 {
+        let entry = self.directory.entry_at([round(x), round(y), round(z)]);
         entry.map_or(0.0, |entry| self.field[entry].into())
     }
 
@@ -107,19 +108,27 @@ impl Sampler<'_> {
 
     /// The values at a voxel and those next to it ahead, x fastest.
     fn corners(&self, low: [isize; 3]) -> [f64; 8] {
-        let within = |a: usize| low[a] >= 0 && low[a] as usize % EDGE + 1 < EDGE;
-        if (0..3).all(within) {
-            // All eight voxels are in one brick, though maybe not in the volume.
-            let last = |a: usize| low[a] as usize + 1 < self.directory.dimensions[a];
-            if (0..3).all(last) {
-                let Some(first) = self.directory.entry_at(low) else {
-                    return [0.0; 8];
-                };
-                let field = &self.field[first..][..LAYER + EDGE + 2];
-                return std::array::from_fn(|i| {
-                    field[(i >> 2) * LAYER + (i >> 1 & 1) * EDGE + (i & 1)].into()
-                });
-            }
+        let within = |a: usize| {
+            let last_of_brick = low[a] as usize % EDGE + 1 == EDGE;
+            low[a] >= 0 && !last_of_brick && low[a] as usize + 1 < self.directory.dimensions[a]
+        };
+        if within(0) && within(1) && within(2) {
+            // All eight voxels are in one brick.
+            let Some(first) = self.directory.entry_at(low) else {
+                return [0.0; 8];
+            };
+            let field = &self.field[first..][..LAYER + EDGE + 2];
+            return [
+                field[0],
+                field[1],
+                field[EDGE],
+                field[EDGE + 1],
+                field[LAYER],
+                field[LAYER + 1],
+                field[LAYER + EDGE],
+                field[LAYER + EDGE + 1],
+            ]
+            .map(f64::from);
         }
         std::array::from_fn(|i| {
             let corner = [i & 1, i >> 1 & 1, i >> 2];

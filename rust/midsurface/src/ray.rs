@@ -125,7 +125,8 @@ impl<'a> Ray<'a> {
     }
 
     fn is_within_volume(&self, voxel: Vec3) -> bool {
-        (0..3).all(|a| voxel[a] >= 0.0 && voxel[a] <= self.last[a])
+        let is_within = |a: usize| voxel[a] >= 0.0 && voxel[a] <= self.last[a];
+        is_within(0) && is_within(1) && is_within(2)
     }
 
     /// The label's mask, linear between voxels; `None` outside the volume.
@@ -135,15 +136,17 @@ impl<'a> Ray<'a> {
             return None;
         }
         // None is negative, so that a cast is the floor.
-        let low = voxel.map(|v| v as usize);
-        let Some(brick) = self.label.distance.directory.brick(low.map(|v| v / EDGE)) else {
+        let low = [voxel[0] as usize, voxel[1] as usize, voxel[2] as usize];
+        let place = [low[0] / EDGE, low[1] / EDGE, low[2] / EDGE];
+        let Some(brick) = self.label.distance.directory.brick(place) else {
             return Some(0.0);
         };
-        let corners = self.label.mask.corners(brick, low.map(|v| v % EDGE));
+        let within = [low[0] % EDGE, low[1] % EDGE, low[2] % EDGE];
+        let corners = self.label.mask.corners(brick, within);
         if corners == 0 || corners == u8::MAX {
             return Some(f64::from(corners & 1));
         }
-        let [x, y, z]: Vec3 = std::array::from_fn(|a| voxel[a] - low[a] as f64);
+        let [x, y, z] = [0, 1, 2].map(|a| voxel[a] - low[a] as f64);
         let m = |i: usize| f64::from(corners >> i & 1);
         let between = |t: f64, a: f64, b: f64| a + t * (b - a);
         let along_x = |i: usize| between(x, m(i), m(i + 1));
