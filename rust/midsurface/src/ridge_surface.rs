@@ -30,6 +30,7 @@ use crate::remesh::remesh;
 use crate::rim::{self, sheet_fraction};
 use crate::scale::{self, HalfThickness};
 use crate::scraps::drop_scraps;
+use crate::self_intersections::{self, remove_self_intersections};
 use crate::settle::settle;
 use crate::sheet::Sheet;
 use crate::terraces::{self, flatten_terraces, LineOfPoint};
@@ -104,12 +105,13 @@ pub(crate) fn ridge_surface(
         triangles: remeshed.triangles,
     };
     keep_within(grid, &mut found.points);
-    let passes = 1 + 2 * NORMAL_PASSES + terraces::PASSES;
+    let passes = 1 + 2 * NORMAL_PASSES + terraces::PASSES + self_intersections::PASSES;
     execution.stage("Flattening terraces", 0.94, 1.0, passes)?;
     drop_degenerate(&mut found, in_mesh(grid), execution)?;
     let mut found = found.compact()?;
     let fans = Fans::new(&found.triangles, found.points.len());
     flatten(&mut found, &fans, wanted, execution)?;
+    let fans = remove_self_intersections(&mut found, fans, execution)?;
     keep_within(grid, &mut found.points);
     let fans = if drop_degenerate(&mut found, in_mesh(grid), execution)? {
         found = found.compact()?;

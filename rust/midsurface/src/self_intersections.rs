@@ -1,0 +1,371 @@
+//! Surface → surface that does not cross itself.
+//!
+//! Within the surface sheets keep apart, but a rim may lie against another sheet: where a sheet
+//! ends at a junction, or along a cut through what cannot be wound one way, both sides of which are
+//! rims in the same place. Moving midway, triangles as long as a voxel, and the low-pass then let
+//! the one run into the other. A rim that touches another triangle is drawn back into its own
+//! sheet, step by step and no farther than it takes. What touches even so is cut away.
+//!
+//! Only rims are looked at, in the cells of a grid, so that it costs little where nothing touches.
+
+use crate::buckets::Buckets;
+use crate::error::{reserved, zeros, Result};
+use crate::execution::Execution;
+use crate::grid::{along, floor, sub, Vec3};
+use crate::halfedge::{ends, Fans, NONE};
+use crate::manifold::{make_manifold, Surface};
+use crate::scraps::drop_scraps;
+use crate::touching::{touch, TOUCHING};
+
+/// Share of the way to the points next to the rim that a rim point is drawn back in a step, and the
+/// most steps: in all about half of the way.
+const STEP: f64 = 0.12;
+const STEPS: usize = 6;
+/// Times that triangles are cut away, at most.
+const CUTS: usize = 4;
+/// Side of a cell, in mean sizes of a triangle; larger where the grid would have more than so many
+/// cells a triangle.
+const SIDE: f64 = 1.5;
+const CELLS: usize = 4;
+/// Triangles handed to a worker at a time.
+const PIECE: usize = 4096;
+/// Passes over the triangles that [`remove_self_intersections`] makes where nothing touches, for its progress.
+pub(crate) const PASSES: usize = 2;
+
+/// Draws rims back, and cuts away what has to be, until no two triangles touch beyond what they
+/// share. Takes and returns the surface's fans.
+pub(crate) fn remove_self_intersections(
+    surface: &mut Surface,
+    mut fans: Fans,
+    execution: &mut Execution,
+) -> Result<Fans> {
+    for _ in 0..CUTS {
+        let on_rim = on_rim(surface, &fans, execution)?;
+        let mut all: Vec<u32> = reserved(surface.triangles.len())?;
+        all.extend(0..surface.triangles.len() as u32);
+        let touching = touching(surface, &on_rim, &all, execution)?;
+        if touching.is_empty() {
+            break;
+        }
+        let near = near(surface, &touching)?;
+        let left = draw_back(surface, (&fans, &on_rim), &near, touching, execution)?;
+        if left.is_empty() {
+            break;
+        }
+        cut_away(surface, &on_rim, &left, execution)?;
+        fans = Fans::new(&surface.triangles, surface.points.len());
+    }
+    Ok(fans)
+}
+
+/// Whether each point is on a rim.
+fn on_rim(surface: &Surface, fans: &Fans, execution: &mut Execution) -> Result<Vec<bool>> {
+    let triangles = &surface.triangles;
+    let mut rims: Vec<bool> = zeros(3 * triangles.len())?;
+    execution.fill(&mut rims, PIECE, |piece, out| {
+        for (i, is_rim) in out.iter_mut().enumerate() {
+            *is_rim = fans.twin(triangles, (PIECE * piece + i) as u32) == NONE;
+        }
+    })?;
+    let mut on_rim: Vec<bool> = zeros(surface.points.len())?;
+    for (e, _) in rims.iter().enumerate().filter(|(_, is_rim)| **is_rim) {
+        let (a, b) = ends(triangles, e as u32);
+        (on_rim[a as usize], on_rim[b as usize]) = (true, true);
+    }
+    Ok(on_rim)
+}
+
+/// The pairs among some triangles that touch, one of them at a rim.
+fn touching(
+    surface: &Surface,
+    on_rim: &[bool],
+    among: &[u32],
+    execution: &mut Execution,
+) -> Result<Vec<[u32; 2]>> {
+    let is_at_rim = |t: u32| {
+        surface.triangles[t as usize]
+            .iter()
+            .any(|&p| on_rim[p as usize])
+    };
+    let mut at_rim: Vec<u32> = reserved(among.len())?;
+    at_rim.extend(among.iter().filter(|&&t| is_at_rim(t)));
+    if at_rim.is_empty() {
+        return Ok(Vec::new());
+    }
+    let cells = Cells::around(surface, &at_rim);
+    let entries = || {
+        let of = |&t: &u32| {
+            cells
+                .reached_by(bounds(surface, t))
+                .map(move |cell| (cell, t))
+        };
+        at_rim.iter().flat_map(of)
+    };
+    let in_cell = Buckets::new(cells.count(), entries);
+    let touches = |t: u32, rim: u32| {
+        let (own, other) = (bounds(surface, t), bounds(surface, rim));
+        let [a, b] = [t, rim].map(|t| surface.triangles[t as usize]);
+        // Two at rims meet twice.
+        (t < rim || !is_at_rim(t)) && overlap(own, other) && touch(a, b, &surface.points)
+    };
+    let pieces: Vec<&[u32]> = among.chunks(PIECE).collect();
+    let mut pairs = Vec::new();
+    execution.stream(
+        &pieces,
+        |piece| {
+            let mut found = Vec::new();
+            for &t in *piece {
+                for cell in cells.reached_by(bounds(surface, t)) {
+                    let rims = in_cell.of(cell as usize).iter();
+                    found.extend(rims.filter(|&&rim| touches(t, rim)).map(|&rim| [t, rim]));
+                }
+            }
+            found
+        },
+        |found| {
+            pairs.extend(found);
+            Ok(())
+        },
+    )?;
+    Ok(pairs)
+}
+
+/// The triangles around pairs that touch, as far as drawing those back can make others touch.
+fn near(surface: &Surface, touching: &[[u32; 2]]) -> Result<Vec<u32>> {
+    let cells = Cells::around(surface, touching.as_flattened());
+    let mut is_near: Vec<bool> = zeros(cells.count())?;
+    for &t in touching.as_flattened() {
+        let [low, high] = bounds(surface, t);
+        let wider = [low.map(|v| v - cells.side), high.map(|v| v + cells.side)];
+        cells
+            .reached_by(wider)
+            .for_each(|cell| is_near[cell as usize] = true);
+    }
+    let all = 0..surface.triangles.len() as u32;
+    let reaches = |t: &u32| {
+        let mut own = cells.reached_by(bounds(surface, *t));
+        own.any(|cell| is_near[cell as usize])
+    };
+    Ok(all.filter(reaches).collect())
+}
+
+/// Draws the rims of pairs that touch back; returns the pairs that touch in the end.
+fn draw_back(
+    surface: &mut Surface,
+    (fans, on_rim): (&Fans, &[bool]),
+    near: &[u32],
+    mut touching: Vec<[u32; 2]>,
+    execution: &mut Execution,
+) -> Result<Vec<[u32; 2]>> {
+    for _ in 0..STEPS {
+        let corners = touching.as_flattened().iter();
+        let corners = corners.flat_map(|&t| surface.triangles[t as usize]);
+        let mut rims: Vec<u32> = corners.filter(|&p| on_rim[p as usize]).collect();
+        rims.sort_unstable();
+        rims.dedup();
+        for p in rims {
+            // Inner points stay, so that the order of the rim's does not matter.
+            let around = fans
+                .of(p)
+                .iter()
+                .flat_map(|&e| surface.triangles[e as usize / 3]);
+            let (mut way, mut count) = ([0.0; 3], 0.0);
+            for q in around.filter(|&q| !on_rim[q as usize]) {
+                let to = sub(surface.points[q as usize], surface.points[p as usize]);
+                (way, count) = (along(way, 1.0, to), count + 1.0);
+            }
+            if count > 0.0 {
+                let point = &mut surface.points[p as usize];
+                *point = along(*point, STEP / count, way);
+            }
+        }
+        touching = self::touching(surface, on_rim, near, execution)?;
+        if touching.is_empty() {
+            break;
+        }
+    }
+    Ok(touching)
+}
+
+/// Cuts one of each pair away: the one with more of the rim.
+fn cut_away(
+    surface: &mut Surface,
+    on_rim: &[bool],
+    touching: &[[u32; 2]],
+    execution: &mut Execution,
+) -> Result<()> {
+    let corners_on_rim = |t: u32| {
+        let corners = surface.triangles[t as usize];
+        corners.iter().filter(|&&p| on_rim[p as usize]).count()
+    };
+    let mut stays: Vec<bool> = zeros(surface.triangles.len())?;
+    stays.fill(true);
+    for &[a, b] in touching {
+        let goes = if corners_on_rim(a) > corners_on_rim(b) {
+            a
+        } else {
+            b
+        };
+        if stays[a as usize] && stays[b as usize] {
+            stays[goes as usize] = false;
+        }
+    }
+    let mut stays = stays.into_iter();
+    surface.triangles.retain(|_| stays.next() == Some(true));
+    make_manifold(surface, execution)?;
+    drop_scraps(surface);
+    *surface = std::mem::take(surface).compact()?;
+    Ok(())
+}
+
+/// Lower and upper corner of what encloses a triangle, with room for touching.
+fn bounds(surface: &Surface, t: u32) -> [Vec3; 2] {
+    let [a, b, c] = surface.triangles[t as usize].map(|p| surface.points[p as usize]);
+    [
+        std::array::from_fn(|k| a[k].min(b[k]).min(c[k]) - TOUCHING),
+        std::array::from_fn(|k| a[k].max(b[k]).max(c[k]) + TOUCHING),
+    ]
+}
+
+fn overlap([low, high]: [Vec3; 2], [other_low, other_high]: [Vec3; 2]) -> bool {
+    (0..3).all(|k| high[k] >= other_low[k] && other_high[k] >= low[k])
+}
+
+/// A grid of cubes around some triangles.
+struct Cells {
+    low: Vec3,
+    side: f64,
+    dimensions: [usize; 3],
+}
+
+impl Cells {
+    fn around(surface: &Surface, triangles: &[u32]) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let mut size = 0.0;
+        for &t in triangles {
+            let [from, to] = bounds(surface, t);
+            low = std::array::from_fn(|k| low[k].min(from[k]));
+            high = std::array::from_fn(|k| high[k].max(to[k]));
+            size += (0..3).map(|k| to[k] - from[k]).fold(0.0, f64::max);
+        }
+        let extent = sub(high, low);
+        let most = CELLS * surface.triangles.len();
+        let least = (extent.iter().product::<f64>() / most as f64).cbrt();
+        let side = least.max(SIDE * size / triangles.len() as f64);
+        Self {
+            low,
+            side,
+            dimensions: extent.map(|v| (v / side) as usize + 1),
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.dimensions.iter().product()
+    }
+
+    /// The cells that a box reaches into; none where it lies beyond the grid.
+    fn reached_by(&self, [low, high]: [Vec3; 2]) -> impl Iterator<Item = u32> {
+        let [nx, ny, nz] = self.dimensions;
+        let range = |k: usize, n: usize| {
+            let at = |v: f64| floor((v - self.low[k]) / self.side);
+            let first = at(low[k]).max(0) as usize;
+            let end = (at(high[k]) + 1).clamp(0, n as isize) as usize;
+            first..end
+        };
+        let (x, y, z) = (range(0, nx), range(1, ny), range(2, nz));
+        z.flat_map(move |z| {
+            let x = x.clone();
+            y.clone()
+                .flat_map(move |y| x.clone().map(move |x| ((z * ny + y) * nx + x) as u32))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::execution::Quiet;
+
+    /// Adds a lattice of squares with sides of 1, each cut in two.
+    fn add_lattice(surface: &mut Surface, sides: [u32; 2], place: impl Fn(f64, f64) -> Vec3) {
+        let [columns, rows] = sides;
+        let first = surface.points.len() as u32;
+        let at = |i: u32, j: u32| first + j * (columns + 1) + i;
+        for j in 0..rows {
+            for i in 0..columns {
+                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                // All corners of the lattice have a point inside beside them.
+                surface
+                    .triangles
+                    .extend(match (2 * i < columns) == (2 * j < rows) {
+                        true => [[a, b, c], [a, c, d]],
+                        false => [[a, b, d], [b, c, d]],
+                    });
+            }
+        }
+        let points = (0..=rows).flat_map(|j| (0..=columns).map(move |i| (i, j)));
+        let points = points.map(|(i, j)| place(f64::from(i), f64::from(j)));
+        surface.points.extend(points);
+        surface.source.resize(surface.points.len(), 0);
+    }
+
+    /// A flat sheet and an upright one whose lower rim is at this height.
+    fn sheets_at(height: f64) -> Surface {
+        let mut surface = Surface::default();
+        add_lattice(&mut surface, [12, 12], |x, y| [x, y, 0.0]);
+        add_lattice(&mut surface, [6, 8], |x, z| [3.2 + x, 6.3, height + z]);
+        surface
+    }
+
+    fn uncrossed(mut surface: Surface, threads: usize) -> Surface {
+        let mut quiet = Quiet::default();
+        let fans = Fans::new(&surface.triangles, surface.points.len());
+        let mut execution = Execution::new(threads, &mut quiet).unwrap();
+        remove_self_intersections(&mut surface, fans, &mut execution).unwrap();
+        surface
+    }
+
+    /// Pairs of triangles that touch, whether at a rim or not.
+    fn count_touching(surface: &Surface) -> usize {
+        let t = &surface.triangles;
+        let touching = |a: usize| (0..a).filter(move |&b| touch(t[a], t[b], &surface.points));
+        (0..t.len()).flat_map(touching).count()
+    }
+
+    #[test]
+    fn what_does_not_touch_stays() {
+        let before = sheets_at(0.3);
+        let after = uncrossed(sheets_at(0.3), 2);
+        assert_eq!(before.points, after.points);
+        assert_eq!(before.triangles, after.triangles);
+    }
+
+    #[test]
+    fn a_rim_that_touches_a_sheet_is_drawn_back() {
+        let before = sheets_at(-0.3);
+        assert!(count_touching(&before) > 0);
+        let after = uncrossed(sheets_at(-0.3), 2);
+        assert_eq!(count_touching(&after), 0);
+        assert_eq!(before.triangles, after.triangles);
+        let moved = before
+            .points
+            .iter()
+            .zip(&after.points)
+            .filter(|(a, b)| a != b);
+        for (from, to) in moved {
+            assert!(to[2] > from[2] && to[2] < from[2] + 0.6, "{from:?} {to:?}");
+        }
+        assert_eq!(uncrossed(sheets_at(-0.3), 1).points, after.points);
+    }
+
+    #[test]
+    fn a_rim_that_goes_too_far_through_a_sheet_is_cut_away() {
+        let after = uncrossed(sheets_at(-0.9), 2);
+        assert_eq!(count_touching(&after), 0);
+        // The flat sheet is whole, and of the upright one there is what lies above it.
+        let flat = |t: &&[u32; 3]| t.iter().all(|&p| after.points[p as usize][2] == 0.0);
+        assert_eq!(after.triangles.iter().filter(flat).count(), 2 * 12 * 12);
+        let above = |t: &&[u32; 3]| t.iter().all(|&p| after.points[p as usize][2] > 0.5);
+        assert!(after.triangles.iter().filter(above).count() >= 2 * 6 * 6);
+    }
+}
