@@ -19,7 +19,7 @@
 //! | sheets | profile → normal and offset of the sheet at every voxel near it | `crest.rs`, `extension.rs`, `settle.rs` |
 //! | contour | sheets → a surface through them, cut at the label's rims | `contour.rs`, `rim.rs`, `trim.rs`, `scraps.rs` |
 //! | midway | surface → surface midway between both faces | `midway.rs` |
-//! | mesh | triangles → nearly equilateral ones, no terraces, no crossings | `remesh`, `terraces.rs`, `crossings.rs` |
+//! | mesh | triangles → nearly equilateral ones, no terraces, no self-intersections | `remesh`, `terraces.rs`, `self_intersections.rs` |
 //!
 //! The polyline zipper is the method of Boneš et al., "MidSurfer: A Parameter-Free Approach for
 //! Mid-Surface Extraction from Segmented Volumetric Data" (arXiv 2405.19339):
