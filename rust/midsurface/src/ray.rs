@@ -5,7 +5,7 @@
 //! position.
 
 use crate::bricks::EDGE;
-use crate::grid::{along, length, Vec3};
+use crate::grid::{along, Vec3};
 use crate::interpolation::Sampler;
 use crate::mask::Mask;
 
@@ -13,6 +13,8 @@ use crate::mask::Mask;
 const STEP: f64 = 0.5;
 /// From a voxel's depth to a step that cannot pass a face, work units.
 const SHORT_OF_FACE: f64 = 1.5;
+/// From voxels no deeper than this a ray goes on by the shortest step, work units.
+pub(crate) const DEEP: f64 = SHORT_OF_FACE + STEP;
 /// Rounds of false position (Illinois): a hundredth of a step and better.
 const ROUNDS: usize = 3;
 
@@ -34,8 +36,6 @@ pub(crate) struct Ray<'a> {
     label: &'a Inside<'a>,
     /// The volume's last voxel along each axis.
     last: Vec3,
-    /// A voxel so deep has all those around it within the label: a voxel's diagonal.
-    deep: f64,
     from: Vec3,
     /// Voxels in a work unit of its length.
     direction: Vec3,
@@ -49,7 +49,6 @@ impl<'a> Ray<'a> {
         Self {
             label,
             last: directory.dimensions.map(|count| (count - 1) as f64),
-            deep: length(h),
             from: voxels(from),
             direction: voxels(direction),
         }
@@ -58,8 +57,8 @@ impl<'a> Ray<'a> {
     /// Follows the ray until the label or the volume ends.
     pub fn reach(&self) -> Reach {
         let most = (2.0 * crate::distance::LARGEST / STEP) as usize;
-        let (mut t, mut depth) = (0.0, self.depth(0.0));
-        let Some(mut mask) = self.mask(0.0, depth) else {
+        let mut t = 0.0;
+        let Some((mut mask, mut depth)) = self.look(t) else {
             return Reach::Border;
         };
         for _ in 0..most {
@@ -67,14 +66,13 @@ impl<'a> Ray<'a> {
                 break;
             }
             let next = t + (depth - SHORT_OF_FACE).max(STEP);
-            depth = self.depth(next);
-            let Some(ahead) = self.mask(next, depth) else {
+            let Some((ahead, deep)) = self.look(next) else {
                 return Reach::Border;
             };
             if ahead < 0.5 {
                 return Reach::Face(self.crossing((t, mask), (next, ahead)));
             }
-            (t, mask) = (next, ahead);
+            (t, mask, depth) = (next, ahead, deep);
         }
         Reach::Face(t)
     }
@@ -88,7 +86,7 @@ impl<'a> Ray<'a> {
         let mut was_inside = None;
         for _ in 0..ROUNDS {
             let t = between(low, high);
-            let Some(mask) = self.interpolated(t) else {
+            let Some((mask, _)) = self.look(t) else {
                 break;
             };
             let inside = mask >= 0.5;
@@ -109,28 +107,14 @@ impl<'a> Ray<'a> {
         along(self.from, t, self.direction)
     }
 
-    /// Distance to the outside at the voxel nearest to the ray, 0 outside the label.
-    fn depth(&self, t: f64) -> f64 {
-        self.label.distance.nearest(self.at(t))
-    }
-
-    /// The label's mask where the nearest voxel is so deep; `None` outside the volume.
-    fn mask(&self, t: f64, depth: f64) -> Option<f64> {
-        // The eight voxels around are within a voxel's diagonal of the nearest one.
-        if depth > self.deep {
-            self.is_within_volume(self.at(t)).then_some(1.0)
-        } else {
-            self.interpolated(t)
-        }
-    }
-
     fn is_within_volume(&self, voxel: Vec3) -> bool {
         let is_within = |a: usize| voxel[a] >= 0.0 && voxel[a] <= self.last[a];
         is_within(0) && is_within(1) && is_within(2)
     }
 
-    /// The label's mask, linear between voxels; `None` outside the volume.
-    fn interpolated(&self, t: f64) -> Option<f64> {
+    /// The label's mask, linear between voxels, and where that is whole and may be for long, how far
+    /// the outside is from the nearest voxel, else 0; `None` outside the volume.
+    fn look(&self, t: f64) -> Option<(f64, f64)> {
         let voxel = self.at(t);
         if !self.is_within_volume(voxel) {
             return None;
@@ -138,19 +122,31 @@ impl<'a> Ray<'a> {
         // None is negative, so that a cast is the floor.
         let low = [voxel[0] as usize, voxel[1] as usize, voxel[2] as usize];
         let place = [low[0] / EDGE, low[1] / EDGE, low[2] / EDGE];
-        let Some(brick) = self.label.distance.directory.brick(place) else {
-            return Some(0.0);
+        let Inside { distance, mask } = self.label;
+        let Some(brick) = distance.directory.brick(place) else {
+            return Some((0.0, 0.0));
         };
         let within = [low[0] % EDGE, low[1] % EDGE, low[2] % EDGE];
-        let corners = self.label.mask.corners(brick, within);
-        if corners == 0 || corners == u8::MAX {
-            return Some(f64::from(corners & 1));
+        let corners = mask.corners(brick, within);
+        if corners == 0 {
+            return Some((0.0, 0.0));
+        }
+        if corners == u8::MAX {
+            let is_deep = mask.is_deep(brick);
+            return Some((
+                1.0,
+                if is_deep {
+                    distance.nearest(voxel)
+                } else {
+                    0.0
+                },
+            ));
         }
         let [x, y, z] = [0, 1, 2].map(|a| voxel[a] - low[a] as f64);
         let m = |i: usize| f64::from(corners >> i & 1);
         let between = |t: f64, a: f64, b: f64| a + t * (b - a);
         let along_x = |i: usize| between(x, m(i), m(i + 1));
         let along_y = |i: usize| between(y, along_x(i), along_x(i + 2));
-        Some(between(z, along_y(0), along_y(4)))
+        Some((between(z, along_y(0), along_y(4)), 0.0))
     }
 }

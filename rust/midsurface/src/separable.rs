@@ -266,9 +266,10 @@ impl<'a> Neighbours<'a> {
             out.fill(0.0);
             return;
         }
+        let mut lines = Vec::new();
         for (value, out) in out.chunks_exact_mut(BRICK).enumerate() {
             match axis {
-                0 => self.along_x(value, combine, out),
+                0 => self.along_x(value, combine, &mut lines, out),
                 _ => self.across(value, axis, combine, out),
             }
         }
@@ -308,16 +309,18 @@ impl<'a> Neighbours<'a> {
         }
     }
 
-    /// Filters one value of the voxels along x.
+    /// Filters one value of the voxels along x. `lines`, empty at first, is for all values.
     #[inline(always)]
     fn along_x(
         &self,
         value: usize,
         combine: impl Fn(f32, f32, f32) -> f32 + Copy,
+        lines: &mut Vec<f32>,
         out: &mut [f32],
     ) {
         let width = self.bricks.len() * EDGE;
-        let mut lines = vec![0.0; LAYER * width];
+        // Empty bricks leave their zeros.
+        lines.resize(LAYER * width, 0.0);
         for (line, own) in lines.chunks_exact_mut(width).enumerate() {
             for (brick, own) in self.bricks.iter().zip(own.chunks_exact_mut(EDGE)) {
                 if let Some(brick) = brick {
