@@ -5,8 +5,8 @@
 //! beyond the rims (`extension.rs`), a surface through them (`contour.rs`), wound the same way
 //! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
 //! (`weld.rs`), moved midway between both faces (`midway.rs`), remeshed (`remesh`), rid of terraces
-//! (`terraces.rs`) and of self-intersections (`self_intersections.rs`). How much of the progress a stage
-//! is given is how long it took on the membranes of real cells.
+//! (`terraces.rs`) and of self-intersections (`self_intersections.rs`). How much of the progress a
+//! stage is given is how long it took on the membranes of real cells.
 
 use crate::bending;
 use crate::bricks::Batch;

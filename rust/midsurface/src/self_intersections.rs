@@ -22,7 +22,7 @@ use crate::touching::{touch, TOUCHING};
 const STEP: f64 = 0.12;
 const STEPS: usize = 6;
 /// Times that triangles are cut away, at most.
-const CUTS: usize = 4;
+const CUTS: usize = 8;
 /// Side of a cell, in mean sizes of a triangle; larger where the grid would have more than so many
 /// cells a triangle.
 const SIDE: f64 = 1.5;
@@ -39,7 +39,7 @@ pub(crate) fn remove_self_intersections(
     mut fans: Fans,
     execution: &mut Execution,
 ) -> Result<Fans> {
-    for _ in 0..CUTS {
+    for cut in 1..=CUTS {
         let on_rim = on_rim(surface, &fans, execution)?;
         let mut all: Vec<u32> = reserved(surface.triangles.len())?;
         all.extend(0..surface.triangles.len() as u32);
@@ -52,7 +52,8 @@ pub(crate) fn remove_self_intersections(
         if left.is_empty() {
             break;
         }
-        cut_away(surface, &on_rim, &left, execution)?;
+        let all = cut == CUTS;
+        cut_away(surface, (&fans, &on_rim), &left, all, execution)?;
         fans = Fans::new(&surface.triangles, surface.points.len());
     }
     Ok(fans)
@@ -187,31 +188,35 @@ fn draw_back(
     Ok(touching)
 }
 
-/// Cuts one of each pair away: the one with more of the rim.
+/// Cuts one of each pair away, as long as they have no points in common, unless they are `all` to go.
 fn cut_away(
     surface: &mut Surface,
-    on_rim: &[bool],
+    (fans, on_rim): (&Fans, &[bool]),
     touching: &[[u32; 2]],
+    all: bool,
     execution: &mut Execution,
 ) -> Result<()> {
-    let corners_on_rim = |t: u32| {
-        let corners = surface.triangles[t as usize];
-        corners.iter().filter(|&&p| on_rim[p as usize]).count()
+    let triangles = &surface.triangles;
+    let is_rim = |e: &u32| fans.twin(triangles, *e) == NONE;
+    // What meets the rim in two places holds the surface together there.
+    let worth = |t: u32| {
+        let corners = triangles[t as usize].iter();
+        let corners = corners.filter(|&&p| on_rim[p as usize]).count();
+        let sides = (3 * t..3 * t + 3).filter(is_rim).count();
+        (corners == sides + 1 || sides == 3, corners)
     };
-    let mut stays: Vec<bool> = zeros(surface.triangles.len())?;
-    stays.fill(true);
+    let mut taken: Vec<bool> = zeros(surface.points.len())?;
+    let mut goes: Vec<bool> = zeros(triangles.len())?;
     for &[a, b] in touching {
-        let goes = if corners_on_rim(a) > corners_on_rim(b) {
-            a
-        } else {
-            b
-        };
-        if stays[a as usize] && stays[b as usize] {
-            stays[goes as usize] = false;
+        let cut = if worth(a) > worth(b) { a } else { b };
+        let corners = triangles[cut as usize].map(|p| p as usize);
+        if all || !corners.iter().any(|&p| taken[p]) {
+            corners.iter().for_each(|&p| taken[p] = true);
+            goes[cut as usize] = true;
         }
     }
-    let mut stays = stays.into_iter();
-    surface.triangles.retain(|_| stays.next() == Some(true));
+    let mut goes = goes.into_iter();
+    surface.triangles.retain(|_| goes.next() == Some(false));
     make_manifold(surface, execution)?;
     drop_scraps(surface);
     *surface = std::mem::take(surface).compact()?;
