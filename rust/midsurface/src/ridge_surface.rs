@@ -48,8 +48,9 @@ const SETTLINGS: usize = 4;
 /// Rings of voxels that sheets are extended by, at most.
 const RINGS: u8 = 12;
 /// End of the passband of the low-pass that flattens terraces: shorter waves than for lines, since
-/// midway points have fewer terraces, and thick membranes have bends of their own.
-const PASSBAND: f64 = 0.12;
+/// midway points have fewer terraces, and membranes have bends of their own. Terraces of slices that
+/// lie farther apart are longer: it is divided by the coarsest spacing.
+const PASSBAND: f64 = 0.2;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 
@@ -111,7 +112,8 @@ pub(crate) fn ridge_surface(
     drop_degenerate(&mut found, in_mesh(grid), execution)?;
     let mut found = found.compact()?;
     let fans = Fans::new(&found.triangles, found.points.len());
-    flatten(&mut found, &fans, wanted, execution)?;
+    let passband = PASSBAND / h.iter().copied().fold(1.0, f64::max);
+    flatten(&mut found, &fans, (wanted, passband), execution)?;
     let fans = remove_self_intersections(&mut found, fans, execution)?;
     keep_within(grid, &mut found.points);
     let fans = if drop_degenerate(&mut found, in_mesh(grid), execution)? {
@@ -131,7 +133,12 @@ pub(crate) fn ridge_surface(
 }
 
 /// Removes the terraces of sheets nearly parallel to a lattice plane; rims stay.
-fn flatten(surface: &mut Surface, fans: &Fans, edge: f64, execution: &mut Execution) -> Result<()> {
+fn flatten(
+    surface: &mut Surface,
+    fans: &Fans,
+    (edge, passband): (f64, f64),
+    execution: &mut Execution,
+) -> Result<()> {
     let point = LineOfPoint {
         edge,
         room: f64::INFINITY,
@@ -144,7 +151,7 @@ fn flatten(surface: &mut Surface, fans: &Fans, edge: f64, execution: &mut Execut
         (&surface.triangles, fans),
         &normals,
         &points,
-        PASSBAND,
+        passband,
         execution,
     )
 }
