@@ -75,6 +75,13 @@ pub(crate) fn parts(mut runs: Vec<Run>, execution: &mut Execution) -> Result<(Ve
     Ok((parts, specks))
 }
 
+/// The 26-connected sets of the runs of one label.
+pub(crate) fn connected(runs: &[Run]) -> DisjointSets {
+    let mut sets = DisjointSets::new(runs.len());
+    for_each_touch(runs, |a, b, _| sets.join(a, b));
+    sets
+}
+
 /// Appends one label's parts and returns its number of specks.
 fn parts_of_label(runs: &[Run], components: &mut u32, parts: &mut Vec<Part>) -> usize {
     let mut whole = DisjointSets::new(runs.len());
@@ -221,7 +228,7 @@ impl RowIndex {
 }
 
 /// Calls `touch(a, b, share_a_face)` for all pairs of runs that are 26-neighbours.
-fn for_each_touch(runs: &[Run], mut touch: impl FnMut(usize, usize, bool)) {
+pub(crate) fn for_each_touch(runs: &[Run], mut touch: impl FnMut(usize, usize, bool)) {
     let index = RowIndex::new(runs);
     for (i, &(z, y)) in index.rows.iter().enumerate() {
         let row = index.starts[i]..index.starts[i + 1];

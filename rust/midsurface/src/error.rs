@@ -86,6 +86,20 @@ pub enum Error {
     /// The thread pool could not be made.
     #[error("the worker threads could not be started: {0}")]
     Threads(String),
+    /// Another process of the same run failed.
+    #[error("process {process} failed: {message}")]
+    Elsewhere {
+        /// Its number, from 0.
+        process: usize,
+        /// Its message.
+        message: String,
+    },
+    /// The pieces of the processes are not those of one volume.
+    #[error("the segmentation is spread over several processes, whose parts do not make up one image: save it to a file and open that")]
+    Pieces,
+    /// A process cannot be reached.
+    #[error("the connection between the processes is broken")]
+    Connection,
     /// The observer asked to stop.
     #[error("cancelled")]
     Cancelled,
@@ -101,6 +115,18 @@ pub(crate) fn reserved<T>(length: usize) -> Result<Vec<T>> {
         .try_reserve_exact(length)
         .map_err(|_| Error::OutOfMemory(length.saturating_mul(std::mem::size_of::<T>())))?;
     Ok(buffer)
+}
+
+/// Appends an item, or fails where memory is refused.
+pub(crate) fn push<T>(items: &mut Vec<T>, item: T) -> Result<()> {
+    if items.len() == items.capacity() {
+        let more = items.len().max(64);
+        items
+            .try_reserve(more)
+            .map_err(|_| Error::OutOfMemory(more.saturating_mul(std::mem::size_of::<T>())))?;
+    }
+    items.push(item);
+    Ok(())
 }
 
 /// A vector of `length` zeros, or an error where memory is refused.

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use rayon::ThreadPool;
 
 use crate::error::{reserved, Error, Result};
+use crate::exchange::{numbers, text, Team};
 #[cfg(feature = "inject-panics")]
 use crate::injected_panics::visit;
 
@@ -28,6 +29,47 @@ pub struct Quiet {
 impl Observer for Quiet {
     fn progress(&mut self, _fraction: f64, _stage: &str) -> bool {
         true
+    }
+    fn warning(&mut self, message: &str) {
+        self.warnings.push(message.to_owned());
+    }
+}
+
+/// An observer that keeps warnings until the processes of a run are done.
+pub(crate) struct Collected<'a> {
+    observer: &'a mut dyn Observer,
+    warnings: Vec<String>,
+}
+
+impl<'a> Collected<'a> {
+    pub fn new(observer: &'a mut dyn Observer) -> Self {
+        Self {
+            observer,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Hands the warnings of all processes to the first one.
+    pub fn gather(&mut self, team: &mut Team) -> Result<()> {
+        let own = std::mem::take(&mut self.warnings).join("\n");
+        for of_process in team.gather(numbers(&own))? {
+            let lines = text(&of_process);
+            self.warnings.extend(lines.lines().map(str::to_owned));
+        }
+        Ok(())
+    }
+
+    /// Passes on what was kept.
+    pub fn pass_on(self) {
+        for warning in &self.warnings {
+            self.observer.warning(warning);
+        }
+    }
+}
+
+impl Observer for Collected<'_> {
+    fn progress(&mut self, fraction: f64, stage: &str) -> bool {
+        self.observer.progress(fraction, stage)
     }
     fn warning(&mut self, message: &str) {
         self.warnings.push(message.to_owned());

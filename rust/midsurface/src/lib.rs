@@ -38,6 +38,7 @@
 //! only, never on the order of work: any number of threads gives the same mesh.
 #![forbid(unsafe_code)]
 
+mod batches;
 mod bending;
 mod block;
 mod border;
@@ -52,8 +53,10 @@ mod distance;
 mod eigen;
 mod ends;
 mod error;
+mod exchange;
 mod execution;
 mod extension;
+mod findings;
 mod flips;
 mod grid;
 mod halfedge;
@@ -65,10 +68,12 @@ mod mask;
 mod mesh;
 mod midway;
 mod normals;
+mod pieces;
 mod polylines;
 mod profile;
 mod quality;
 mod ray;
+mod reading;
 mod remesh;
 mod resample;
 mod ridge;
@@ -86,6 +91,7 @@ mod slices;
 mod statistics;
 mod strip;
 mod terraces;
+mod territory;
 mod thickness;
 mod touching;
 mod trace;
@@ -95,19 +101,23 @@ mod volume;
 mod weld;
 mod zipper;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use ndarray::ArrayViewMut3;
 
-use bricks::Batch;
-use components::{parts, Part};
+use batches::{for_each_batch, for_each_ridge_field};
+use components::Part;
 pub use error::{Error, Result};
-use execution::Execution;
+pub use exchange::Exchange;
+use exchange::Team;
+use execution::{Collected, Execution};
 pub use execution::{Observer, Quiet};
+use findings::Findings;
 pub use grid::{Grid, Vec3};
 pub use mesh::{InvariantViolation, Mesh};
 pub use polylines::{Polyline, Polylines};
 pub use quality::Quality;
+use reading::read_parts;
 pub use statistics::{statistics, Scope, Statistics, ThicknessFigures, TriangleMesh};
 pub use volume::{Label, Scalars, Volume};
 
@@ -136,6 +146,14 @@ pub struct Options {
 }
 
 impl Options {
+    /// Share of the run within which labels are read and, by the zipper, lines are traced.
+    fn tracing(&self) -> f64 {
+        match self.method {
+            Method::PolylineZipper => 0.7,
+            Method::RidgeSurface => 1.0,
+        }
+    }
+
     fn check(&self) -> Result<()> {
         if self.edge_length >= 0.0 && self.edge_length.is_finite() {
             Ok(())
@@ -152,17 +170,61 @@ impl Options {
 /// unusable, memory is refused, or the observer cancels.
 pub fn extract(volume: &Volume, options: &Options, observer: &mut dyn Observer) -> Result<Mesh> {
     options.check()?;
-    match options.method {
-        Method::PolylineZipper => {
-            let mut execution = Execution::new(options.threads, observer)?;
-            let polylines = trace_polylines(volume, options, &mut execution, TRACING)?;
-            zip(&polylines, &mut execution)
-        }
-        Method::RidgeSurface => {
-            let mut execution = Execution::new(options.threads, observer)?;
-            find_ridge_surface(volume, options, &mut execution)
-        }
+    let mut execution = Execution::new(options.threads, observer)?;
+    let parts = read_parts(volume, options, &mut execution, options.tracing())?;
+    let (mesh, findings) = find_surface(&parts, &volume.grid, options, &mut execution)?;
+    findings.warn(&mut execution);
+    execution.finish()?;
+    Ok(mesh)
+}
+
+/// The mid-surface of a volume of which each of several processes holds a piece. Each gets the mesh
+/// of whole components, as [`extract`] numbers them; all of them together are what [`extract`]
+/// makes of the whole volume. All processes have to call this at once, with the same options and
+/// the same `whole`, which tells where the voxels of the whole volume lie; pieces may overlap, and
+/// may be `None`. Warnings about the whole go to the observer of the first process.
+///
+/// # Errors
+/// As [`extract`], in all processes where one fails, and where the pieces do not make up the whole.
+pub fn extract_piece(
+    piece: Option<&Volume>,
+    whole: &Grid,
+    options: &Options,
+    exchange: &mut dyn Exchange,
+    observer: &mut dyn Observer,
+) -> Result<Mesh> {
+    let mut warnings = Collected::new(observer);
+    let mut team = Team::new(exchange);
+    let is_first = team.is_first();
+    let result = extract_in_team(piece, whole, options, &mut team, &mut warnings);
+    let result = team.close(result);
+    if is_first {
+        warnings.pass_on();
     }
+    result
+}
+
+fn extract_in_team(
+    piece: Option<&Volume>,
+    whole: &Grid,
+    options: &Options,
+    team: &mut Team,
+    warnings: &mut Collected,
+) -> Result<Mesh> {
+    options.check()?;
+    let mut execution = Execution::new(options.threads, warnings)?;
+    execution.within(0.0, options.tracing());
+    let parts = pieces::gather_parts(piece, whole, options, team, &mut execution)?;
+    let (mesh, findings) = find_surface(&parts, whole, options, &mut execution)?;
+    let of_all = team.gather(findings.pack())?;
+    let mut findings = Findings::default();
+    for of_process in &of_all {
+        findings.add(&Findings::unpack(of_process));
+    }
+    findings.warn(&mut execution);
+    execution.finish()?;
+    warnings.gather(team)?;
+    Ok(mesh)
 }
 
 /// The distinct labels of a volume, ascending; 0 is background.
@@ -176,7 +238,8 @@ pub fn find_labels(
 ) -> Result<Vec<i64>> {
     let mut execution = Execution::new(options.threads, observer)?;
     execution.stage("Finding labels", 0.0, 1.0, 1)?;
-    let scan = runs::scan(volume, &mut execution, |_| false)?;
+    let voxels = volume.grid.voxel_count()?;
+    let scan = runs::scan(volume, voxels, &mut execution, |_| false)?;
     Ok(scan.labels.into_iter().collect())
 }
 
@@ -194,9 +257,10 @@ pub fn ridge_field(
 ) -> Result<()> {
     let mut execution = Execution::new(options.threads, observer)?;
     let unit = volume.grid.unit() as f32;
+    let parts = read_parts(volume, options, &mut execution, 1.0)?;
     for_each_ridge_field(
-        volume,
-        options,
+        &parts,
+        &volume.grid,
         &mut execution,
         1.0,
         "Writing the fields",
@@ -224,7 +288,14 @@ pub fn mid_polylines(
     observer: &mut dyn Observer,
 ) -> Result<Polylines> {
     let mut execution = Execution::new(options.threads, observer)?;
-    trace_polylines(volume, options, &mut execution, 1.0)
+    let parts = read_parts(volume, options, &mut execution, 1.0)?;
+    let (polylines, disks) = trace_polylines(&parts, &volume.grid, &mut execution, 1.0)?;
+    let findings = Findings {
+        disks,
+        ..Findings::default()
+    };
+    findings.warn(&mut execution);
+    Ok(polylines)
 }
 
 /// Joins the polylines of neighbouring slices to a mesh.
@@ -238,253 +309,95 @@ pub fn zip_polylines(
 ) -> Result<Mesh> {
     polylines.check()?;
     let mut execution = Execution::new(options.threads, observer)?;
-    zip(polylines, &mut execution)
+    let mut findings = Findings::default();
+    let mesh = zip(polylines, &mut findings, &mut execution)?;
+    findings.warn(&mut execution);
+    execution.finish()?;
+    Ok(mesh)
 }
 
-fn trace_polylines(
-    volume: &Volume,
+/// The surface of whole components by the method chosen, and what there is to tell about it.
+fn find_surface(
+    parts: &[Part],
+    grid: &Grid,
     options: &Options,
     execution: &mut Execution,
+) -> Result<(Mesh, Findings)> {
+    let mut findings = Findings::default();
+    let mesh = match options.method {
+        Method::PolylineZipper => {
+            let (polylines, disks) = trace_polylines(parts, grid, execution, options.tracing())?;
+            findings.disks = disks;
+            zip(&polylines, &mut findings, execution)?
+        }
+        Method::RidgeSurface => find_ridge_surface(parts, grid, options, &mut findings, execution)?,
+    };
+    Ok((mesh, findings))
+}
+
+/// The polylines, and the number of disks in place of which there are none.
+fn trace_polylines(
+    parts: &[Part],
+    grid: &Grid,
+    execution: &mut Execution,
     until: f64,
-) -> Result<Polylines> {
+) -> Result<(Polylines, usize)> {
     let mut polylines = Polylines::default();
     let mut disks = 0;
     for_each_ridge_field(
-        volume,
-        options,
+        parts,
+        grid,
         execution,
         until,
         "Tracing mid-polylines",
         |batch, field, execution| {
-            disks += polylines::polylines(batch, field, &volume.grid, &mut polylines, execution)?;
+            disks += polylines::polylines(batch, field, grid, &mut polylines, execution)?;
             Ok(())
         },
     )?;
-    if disks > 0 {
-        execution.warning(&format!(
-            "{disks} regions of single slices are disks, where the membrane lies flat in the \
-             slices along z, as at the caps of a vesicle: the surface has a gap there"
-        ));
-    }
-    Ok(polylines)
+    Ok((polylines, disks))
 }
 
 fn find_ridge_surface(
-    volume: &Volume,
+    parts: &[Part],
+    grid: &Grid,
     options: &Options,
+    findings: &mut Findings,
     execution: &mut Execution,
 ) -> Result<Mesh> {
     let mut mesh = Mesh::default();
-    if volume.grid.dimensions.contains(&1) {
-        read_parts(volume, options, execution)?;
-        execution.warning(
-            "there is no surface: the volume is a single slice, in which a membrane is a line",
-        );
-        execution.finish()?;
+    findings.is_slice = grid.dimensions.contains(&1);
+    if findings.is_slice {
         return Ok(mesh);
     }
-    let mut without: BTreeMap<i64, usize> = BTreeMap::new();
-    let count = for_each_batch(volume, options, execution, 1.0, |parts, execution| {
+    for_each_batch(parts, execution, 1.0, |parts, execution| {
         let first = mesh.triangles.len();
-        ridge_surface::ridge_surface(
-            parts,
-            &volume.grid,
-            options.edge_length,
-            &mut mesh,
-            execution,
-        )?;
+        ridge_surface::ridge_surface(parts, grid, options.edge_length, &mut mesh, execution)?;
         let found: BTreeSet<u32> = mesh.components[first..].iter().copied().collect();
         for component in parts.chunk_by(|a, b| a.component == b.component) {
             if !found.contains(&component[0].component) {
-                *without.entry(component[0].label).or_default() += 1;
+                *findings.without.entry(component[0].label).or_default() += 1;
             }
         }
         Ok(())
     })?;
-    warn_of_components_without(&without, execution);
-    if count > 0 {
-        let grid = &volume.grid;
-        warn_if_far(grid::farthest(&grid.corners()), grid.unit(), execution);
-    }
-    execution.finish()?;
+    findings.triangles = mesh.triangles.len();
+    findings.is_far = !parts.is_empty() && findings::is_volume_far(grid);
     Ok(mesh)
 }
 
-/// Warns of the components without a surface, counted for each label.
-fn warn_of_components_without(without: &BTreeMap<i64, usize>, execution: &mut Execution) {
-    for (label, count) in without.iter().take(MOST_LISTED) {
-        execution.warning(&format!(
-            "Label {label}: {count} of its separate pieces gave no surface, since they hold no \
-             sheet that could be followed"
-        ));
-    }
-    if without.len() > MOST_LISTED {
-        let more = without.len() - MOST_LISTED;
-        execution.warning(&format!("{more} more labels have pieces without a surface"));
-    }
-}
-
 /// Takes what is left of the progress.
-fn zip(polylines: &Polylines, execution: &mut Execution) -> Result<Mesh> {
+fn zip(polylines: &Polylines, findings: &mut Findings, execution: &mut Execution) -> Result<Mesh> {
     let polylines = &*polylines.without_repeats();
     execution.stage("Zipping polylines", 0.0, 0.6, zipper::PASSES)?;
     let triangles = zipper::zip(polylines, execution)?;
     execution.stage("Making the mesh", 0.6, 1.0, mesh::PASSES)?;
+    findings.lines = polylines.lines.len();
+    findings.triangles = triangles.len();
     if let Some(([a, b, _], _)) = triangles.first() {
         let [a, b] = [a, b].map(|&p| polylines.points[p as usize]);
         let edge = grid::length(grid::sub(a, b));
-        warn_if_far(grid::farthest(&polylines.points), edge, execution);
-    } else if !polylines.lines.is_empty() {
-        execution.warning(
-            "there is no surface: it takes lines in two neighbouring slices, and this input has \
-             them in single slices only",
-        );
+        findings.is_far = findings::is_far(grid::farthest(&polylines.points), edge);
     }
-    let mesh = Mesh::assemble(polylines, triangles, execution)?;
-    execution.finish()?;
-    Ok(mesh)
-}
-
-/// Warns where the points' 32-bit coordinates, the largest being `farthest`, are too coarse for
-/// edges of this length, world units.
-fn warn_if_far(farthest: f64, edge: f64, execution: &mut Execution) {
-    if farthest * f64::from(f32::EPSILON) > 0.01 * edge {
-        execution.warning(
-            "the volume lies so far from the origin that the points' 32-bit coordinates are \
-             rounded visibly: move its origin nearer to 0",
-        );
-    }
-}
-
-/// Cost of the parts that are worked on at once; a larger component is a batch of its own.
-const BATCH_COST: usize = 600_000;
-
-/// Share of the run that reading the labels takes, and of the polyline zipper's until there are
-/// lines.
-const READING: f64 = 0.05;
-const TRACING: f64 = 0.7;
-
-/// Scans the volume and hands its parts to `work`, in batches of whole components. All takes the
-/// progress up to `until`, within which each call has a span of its own. Tells how many parts there
-/// are.
-fn for_each_batch(
-    volume: &Volume,
-    options: &Options,
-    execution: &mut Execution,
-    until: f64,
-    mut work: impl FnMut(&[Part], &mut Execution) -> Result<()>,
-) -> Result<usize> {
-    execution.within(0.0, until);
-    let all_parts = read_parts(volume, options, execution)?;
-    let total: usize = all_parts.iter().map(Part::voxels).sum();
-    let share = |voxels: usize| until * (READING + (1.0 - READING) * voxels as f64 / total as f64);
-    let mut done = 0;
-    for parts in batches(&all_parts) {
-        let voxels: usize = parts.iter().map(Part::voxels).sum();
-        execution.within(share(done), share(done + voxels));
-        work(parts, execution)?;
-        done += voxels;
-    }
-    execution.within(until, 1.0);
-    Ok(all_parts.len())
-}
-
-/// Hands the parts' ridge fields to `work`, as [`for_each_batch`]; `stage` is what that is called.
-fn for_each_ridge_field(
-    volume: &Volume,
-    options: &Options,
-    execution: &mut Execution,
-    until: f64,
-    stage: &'static str,
-    mut work: impl FnMut(&Batch, &ridge::RidgeField, &mut Execution) -> Result<()>,
-) -> Result<()> {
-    let h = volume.grid.work_spacing();
-    for_each_batch(volume, options, execution, until, |parts, execution| {
-        execution.stage("Computing the ridge field", 0.0, 0.5, ridge::PASSES)?;
-        let (batch, field) = ridge::ridge_field(parts, volume.grid.dimensions, h, execution)?;
-        execution.stage(stage, 0.5, 1.0, 1)?;
-        work(&batch, &field, execution)
-    })?;
-    Ok(())
-}
-
-/// Cuts the parts, which are ordered by component, into batches of whole components.
-fn batches(parts: &[Part]) -> Vec<&[Part]> {
-    let mut batches = Vec::new();
-    let (mut start, mut end, mut cost) = (0, 0, 0);
-    for component in parts.chunk_by(|a, b| a.component == b.component) {
-        let size: usize = component.iter().map(Part::cost).sum();
-        if cost > 0 && cost + size > BATCH_COST {
-            batches.push(&parts[start..end]);
-            (start, cost) = (end, 0);
-        }
-        end += component.len();
-        cost += size;
-    }
-    if end > start {
-        batches.push(&parts[start..end]);
-    }
-    batches
-}
-
-/// The most labels that a message names.
-const MOST_LISTED: usize = 20;
-
-/// The parts of the wanted labels; tells the user what is missing or left out.
-fn read_parts(volume: &Volume, options: &Options, execution: &mut Execution) -> Result<Vec<Part>> {
-    let wanted: Option<BTreeSet<i64>> =
-        options.labels.as_ref().map(|l| l.iter().copied().collect());
-    let is_wanted = |label: i64| wanted.as_ref().is_none_or(|wanted| wanted.contains(&label));
-    execution.stage("Reading labels", 0.0, READING, 2)?;
-    let scan = runs::scan(volume, execution, is_wanted)?;
-    report_labels(wanted.as_ref(), &scan.labels, execution)?;
-    let (mut parts, specks) = parts(scan.runs, execution)?;
-    if specks > 0 {
-        execution.warning(&format!(
-            "{specks} specks of fewer than {} voxels were left out",
-            components::SPECK
-        ));
-    }
-    let volume_size = volume.grid.voxel_count()?;
-    let found = parts.len();
-    parts.retain(|part| part.voxels() < volume_size);
-    if parts.len() < found {
-        execution
-            .warning("one label fills the whole volume: it has no faces, and so no mid-surface");
-    }
-    Ok(parts)
-}
-
-/// Compares the labels asked for with those that are there.
-fn report_labels(
-    wanted: Option<&BTreeSet<i64>>,
-    present: &BTreeSet<i64>,
-    execution: &mut Execution,
-) -> Result<()> {
-    if present.is_empty() {
-        execution.warning("the volume has no label: all its values are 0, so there is no surface");
-        return Ok(());
-    }
-    let Some(wanted) = wanted else {
-        return Ok(());
-    };
-    if wanted.is_empty() {
-        execution.warning("no label is chosen, so there is no surface");
-        return Ok(());
-    }
-    let list = |labels: &mut dyn Iterator<Item = &i64>| {
-        let names: Vec<String> = labels.take(MOST_LISTED).map(i64::to_string).collect();
-        names.join(", ")
-    };
-    let absent = list(&mut wanted.difference(present));
-    if wanted.is_disjoint(present) {
-        return Err(Error::LabelsAbsent {
-            asked: absent,
-            present: list(&mut present.iter()),
-        });
-    }
-    if !absent.is_empty() {
-        execution.warning(&format!("these labels are not in the volume: {absent}"));
-    }
-    Ok(())
+    Mesh::assemble(polylines, triangles, execution)
 }

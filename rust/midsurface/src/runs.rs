@@ -61,41 +61,47 @@ impl Slice {
 }
 
 /// The runs of the wanted labels, ordered by z, y, x, and all labels of the volume.
+#[derive(Default)]
 pub(crate) struct Scan {
     pub runs: Vec<Run>,
     pub labels: BTreeSet<i64>,
+    /// Number of runs of all labels.
+    pub run_count: usize,
 }
 
-/// Reads the whole volume once. `wanted` tells which labels' runs are kept.
+impl Scan {
+    /// Fails where it cannot be a segmentation of `voxels` voxels. Judged by the whole volume, so
+    /// that it does not matter where in it the noise is.
+    pub fn check(&self, voxels: usize) -> Result<()> {
+        let labels = self.labels.len();
+        if labels > MOST_LABELS {
+            return Err(Error::TooManyLabels { limit: MOST_LABELS });
+        }
+        if labels > RAW_LABELS && self.run_count > voxels / RAW_RUN_LENGTH {
+            return Err(Error::NotASegmentation { labels });
+        }
+        Ok(())
+    }
+}
+
+/// Reads the volume, which is `whole` voxels or a piece of them, once. `wanted` tells which labels'
+/// runs are kept.
 pub(crate) fn scan(
     volume: &Volume,
+    whole: usize,
     execution: &mut Execution,
     wanted: impl Fn(i64) -> bool + Sync,
 ) -> Result<Scan> {
-    let [width, height, depth] = volume.grid.dimensions;
-    let slices: Vec<usize> = (0..depth).collect();
-    let mut scan = Scan {
-        runs: Vec::new(),
-        labels: BTreeSet::new(),
-    };
-    let mut run_count = 0;
-    // Judged by the whole volume, so that it does not matter where in it the noise is.
-    let most_runs = width * height * depth / RAW_RUN_LENGTH;
+    let slices: Vec<usize> = (0..volume.grid.dimensions[2]).collect();
+    let mut scan = Scan::default();
     execution.stream(
         &slices,
         |&z| read_slice(volume, z, &wanted),
         |slice| {
             let slice = slice?;
             scan.labels.extend(&slice.labels);
-            run_count += slice.run_count;
-            if scan.labels.len() > MOST_LABELS {
-                return Err(Error::TooManyLabels { limit: MOST_LABELS });
-            }
-            if scan.labels.len() > RAW_LABELS && run_count > most_runs {
-                return Err(Error::NotASegmentation {
-                    labels: scan.labels.len(),
-                });
-            }
+            scan.run_count += slice.run_count;
+            scan.check(whole)?;
             let bytes = slice.runs.len() * std::mem::size_of::<Run>();
             scan.runs
                 .try_reserve(slice.runs.len())

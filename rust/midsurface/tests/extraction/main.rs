@@ -12,6 +12,7 @@ mod labels;
 mod measure;
 mod networks;
 mod observer;
+mod pieces;
 mod polylines;
 mod random_polylines;
 mod random_volumes;

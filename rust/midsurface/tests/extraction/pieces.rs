@@ -1,0 +1,311 @@
+//! A volume that is spread over processes gives the mesh that it gives as a whole.
+
+use std::sync::mpsc::{channel, Receiver, Sender};
+
+use midsurface::{
+    extract, extract_piece, Error, Exchange, Grid, Mesh, Method, Options, Result, Volume,
+};
+use phantoms::*;
+use proptest::prelude::*;
+
+use crate::observer::Recorder;
+
+/// Voxels from .. to along x, y, z; nothing where from is not below to.
+type Extent = [[usize; 3]; 2];
+
+/// Threads in place of processes. A send does not wait for its receiver.
+struct Channels {
+    process: usize,
+    to: Vec<Sender<Vec<i64>>>,
+    from: Vec<Receiver<Vec<i64>>>,
+}
+
+impl Exchange for Channels {
+    fn processes(&self) -> usize {
+        self.to.len()
+    }
+    fn process(&self) -> usize {
+        self.process
+    }
+    fn send(&mut self, to: usize, numbers: &[i64]) -> bool {
+        assert_ne!(to, self.process);
+        self.to[to].send(numbers.to_vec()).is_ok()
+    }
+    fn receive(&mut self, from: usize, numbers: &mut [i64]) -> bool {
+        let Ok(received) = self.from[from].recv() else {
+            return false;
+        };
+        assert_eq!(received.len(), numbers.len());
+        numbers.copy_from_slice(&received);
+        true
+    }
+}
+
+fn connect(processes: usize) -> Vec<Channels> {
+    let mut ends: Vec<Channels> = (0..processes)
+        .map(|process| Channels {
+            process,
+            to: Vec::new(),
+            from: Vec::new(),
+        })
+        .collect();
+    for from in 0..processes {
+        for to in 0..processes {
+            let (sender, receiver) = channel();
+            ends[from].to.push(sender);
+            ends[to].from.push(receiver);
+        }
+    }
+    ends
+}
+
+/// The voxels of `extent`, and where they lie.
+fn cut(labels: &[u8], whole: &Grid, [from, to]: Extent) -> Option<(Vec<u8>, Grid)> {
+    if (0..3).any(|a| from[a] >= to[a]) {
+        return None;
+    }
+    let [nx, ny, _] = whole.dimensions;
+    let rows = (from[2]..to[2]).flat_map(|z| (from[1]..to[1]).map(move |y| (z * ny + y) * nx));
+    let piece = rows.flat_map(|row| labels[row + from[0]..row + to[0]].iter().copied());
+    let grid = Grid {
+        dimensions: std::array::from_fn(|a| to[a] - from[a]),
+        extent_start: std::array::from_fn(|a| whole.extent_start[a] + from[a] as i64),
+        ..whole.clone()
+    };
+    Some((piece.collect(), grid))
+}
+
+/// What each process makes of its piece, and what it tells.
+fn run(
+    labels: &[u8],
+    whole: &Grid,
+    pieces: &[Extent],
+    options: &Options,
+    cancel: impl Fn(usize) -> usize + Sync,
+) -> Vec<(Result<Mesh>, Vec<String>)> {
+    let ends = connect(pieces.len());
+    let work = |mut end: Channels, extent: Extent| {
+        let mut recorder = Recorder::new(cancel(end.process));
+        let piece = cut(labels, whole, extent);
+        let volume = piece
+            .as_ref()
+            .map(|(labels, grid)| Volume::new(labels, grid.clone()).expect("a piece"));
+        let mesh = extract_piece(volume.as_ref(), whole, options, &mut end, &mut recorder);
+        (mesh, recorder.warnings)
+    };
+    let work = &work;
+    std::thread::scope(|scope| {
+        let start = |(end, &extent)| scope.spawn(move || work(end, extent));
+        let threads: Vec<_> = ends.into_iter().zip(pieces).map(start).collect();
+        let outcomes = threads.into_iter().map(|thread| thread.join());
+        outcomes.map(|outcome| outcome.expect("no panic")).collect()
+    })
+}
+
+fn never(_: usize) -> usize {
+    usize::MAX
+}
+
+/// Blocks as ParaView cuts them: of points, so that neighbours share those between them.
+fn blocks(dimensions: [usize; 3], counts: [usize; 3], shared: usize) -> Vec<Extent> {
+    let cut = |axis: usize, i: usize| (dimensions[axis] - 1) * i / counts[axis];
+    let mut blocks = Vec::new();
+    for z in 0..counts[2] {
+        for y in 0..counts[1] {
+            for x in 0..counts[0] {
+                let at = [x, y, z];
+                let to = |a: usize| match at[a] + 1 == counts[a] {
+                    true => dimensions[a],
+                    false => (cut(a, at[a] + 1) + shared).min(dimensions[a]),
+                };
+                blocks.push([
+                    std::array::from_fn(|a| cut(a, at[a])),
+                    std::array::from_fn(to),
+                ]);
+            }
+        }
+    }
+    blocks
+}
+
+/// The bits of a triangle's corners with their normals and thickness, and its label and component.
+type Triangle = (i64, u32, Vec<u32>);
+
+/// The triangles of meshes, whatever the order of points and triangles.
+fn triangles<'a>(meshes: impl IntoIterator<Item = &'a Mesh>) -> Vec<Triangle> {
+    let mut all = Vec::new();
+    for mesh in meshes {
+        for (t, triangle) in mesh.triangles.iter().enumerate() {
+            let corner = |p: u32| {
+                let p = p as usize;
+                let floats = mesh.points[p].into_iter().chain(mesh.normals[p]);
+                floats.chain([mesh.thickness[p]]).map(f32::to_bits)
+            };
+            let corners = triangle.iter().flat_map(|&p| corner(p)).collect();
+            all.push((mesh.labels[t], mesh.components[t], corners));
+        }
+    }
+    all.sort();
+    all
+}
+
+/// Runs `labels` whole and in pieces, and compares meshes and warnings.
+fn compare(labels: &[u8], whole: &Grid, pieces: &[Extent], options: &Options) -> Vec<Mesh> {
+    let volume = Volume::new(labels, whole.clone()).expect("a volume");
+    let mut recorder = Recorder::new(usize::MAX);
+    let expected = extract(&volume, options, &mut recorder);
+    let outcomes = run(labels, whole, pieces, options, never);
+    let mut meshes = Vec::new();
+    for (process, (outcome, warnings)) in outcomes.into_iter().enumerate() {
+        match outcome {
+            Ok(mesh) => meshes.push(mesh),
+            Err(error) => assert!(expected.is_err(), "process {process}: {error}"),
+        }
+        if process == 0 {
+            let sorted = |mut texts: Vec<String>| {
+                texts.sort();
+                texts
+            };
+            assert_eq!(sorted(warnings), sorted(recorder.warnings.clone()));
+        } else {
+            assert_eq!(warnings, Vec::<String>::new(), "process {process}");
+        }
+    }
+    if let Ok(mesh) = &expected {
+        assert_eq!(meshes.len(), pieces.len());
+        for mesh in &meshes {
+            mesh.check_invariants().expect("a sound mesh");
+        }
+        let points: usize = meshes.iter().map(|mesh| mesh.points.len()).sum();
+        assert_eq!(points, mesh.points.len());
+        assert_eq!(triangles(&meshes), triangles([mesh]));
+    }
+    meshes
+}
+
+fn options(method: Method) -> Options {
+    Options {
+        method,
+        threads: 1,
+        ..Options::default()
+    }
+}
+
+#[test]
+fn any_number_of_pieces_gives_the_mesh_of_the_whole() {
+    let dimensions = [96, 72, 40];
+    let labels = mitochondrion(dimensions, 0.05, 11);
+    let whole = Grid {
+        extent_start: [-5, 0, 7],
+        spacing: [1.0, 1.0, 1.3],
+        origin: [100.0, 2.0, 3.0],
+        ..Grid::new(dimensions)
+    };
+    for method in [Method::RidgeSurface, Method::PolylineZipper] {
+        for counts in [[1, 1, 1], [2, 1, 1], [1, 1, 3], [2, 2, 1], [7, 1, 1]] {
+            let pieces = blocks(dimensions, counts, 1);
+            let meshes = compare(&labels, &whole, &pieces, &options(method));
+            let busy = meshes.iter().filter(|mesh| !mesh.triangles.is_empty());
+            assert!(busy.count() >= pieces.len().min(2), "one does all the work");
+        }
+    }
+}
+
+#[test]
+fn the_whole_on_one_process_or_on_all_is_the_whole() {
+    let dimensions = [40, 36, 32];
+    let labels = mitochondrion(dimensions, 0.0, 1);
+    let whole = Grid::new(dimensions);
+    let all = [[0; 3], dimensions];
+    for pieces in [[[[0; 3]; 2], all, [[0; 3]; 2]], [all; 3]] {
+        compare(&labels, &whole, &pieces, &options(Method::RidgeSurface));
+    }
+}
+
+#[test]
+fn pieces_that_leave_something_out_are_refused_by_all() {
+    let dimensions = [12, 10, 8];
+    let whole = Grid::new(dimensions);
+    let labels = vec![0; 12 * 10 * 8];
+    let hole = [[[0; 3], [12, 10, 4]], [[0, 0, 5], dimensions]];
+    for (outcome, _) in run(&labels, &whole, &hole, &Options::default(), never) {
+        assert_eq!(outcome, Err(Error::Pieces));
+    }
+}
+
+#[test]
+fn what_fails_in_one_process_fails_in_all() {
+    let dimensions = [48, 20, 20];
+    let whole = Grid::new(dimensions);
+    let labels = mitochondrion(dimensions, 0.0, 3);
+    let pieces = blocks(dimensions, [3, 1, 1], 1);
+    let absent = Options {
+        labels: Some(vec![77]),
+        ..Options::default()
+    };
+    let outcomes = run(&labels, &whole, &pieces, &absent, never);
+    assert!(matches!(outcomes[0].0, Err(Error::LabelsAbsent { .. })));
+    for (outcome, _) in &outcomes[1..] {
+        let error = outcome.as_ref().expect_err("refused").to_string();
+        assert!(
+            error.starts_with("process 0 failed: none of the labels"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn a_cancel_in_one_process_ends_all() {
+    let dimensions = [48, 40, 36];
+    let whole = Grid::new(dimensions);
+    let labels = mitochondrion(dimensions, 0.0, 3);
+    let pieces = blocks(dimensions, [3, 1, 1], 1);
+    for process in 0..3 {
+        for call in [0, 1, 2, 3, 5, 8, 13, 21] {
+            let cancel = |p: usize| if p == process { call } else { usize::MAX };
+            for (outcome, _) in run(&labels, &whole, &pieces, &Options::default(), cancel) {
+                assert_eq!(
+                    outcome,
+                    Err(Error::Cancelled),
+                    "process {process}, call {call}"
+                );
+            }
+        }
+    }
+}
+
+/// Random labels in lumps, so that there are components of all sizes.
+fn lumps(dimensions: [usize; 3]) -> impl Strategy<Value = Vec<u8>> {
+    let extent = |axis: usize| (0..dimensions[axis], 1..7usize);
+    let lump = (extent(0), extent(1), extent(2), 0..4u8);
+    prop::collection::vec(lump, 1..40).prop_map(move |lumps| {
+        let [nx, ny, nz] = dimensions;
+        let mut labels = vec![0; nx * ny * nz];
+        for ((x, wide), (y, high), (z, deep), label) in lumps {
+            for z in z..(z + deep).min(nz) {
+                for y in y..(y + high).min(ny) {
+                    let row = (z * ny + y) * nx;
+                    labels[row + x..row + (x + wide).min(nx)].fill(label);
+                }
+            }
+        }
+        labels
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_volumes_in_random_pieces(
+        labels in lumps([26, 22, 18]),
+        counts in [1..4usize, 1..4usize, 1..3usize],
+        shared in 0..3usize,
+        zipper in any::<bool>(),
+    ) {
+        let dimensions = [26, 22, 18];
+        let method = if zipper { Method::PolylineZipper } else { Method::RidgeSurface };
+        let pieces = blocks(dimensions, counts, shared);
+        compare(&labels, &Grid::new(dimensions), &pieces, &options(method));
+    }
+}
