@@ -165,6 +165,35 @@ typedef struct midsurface_polylines midsurface_polylines;
 typedef struct midsurface_statistics midsurface_statistics;
 
 /**
+ * How processes that work on one volume reach each other, for example by MPI.
+ */
+typedef struct midsurface_exchange {
+  /**
+   * Number of processes, at least 1.
+   */
+  size_t processes;
+  /**
+   * Number of this process, from 0.
+   */
+  size_t process;
+  /**
+   * Sends length numbers to the process `to`, another one than this; may wait until they are
+   * received. False: that process cannot be reached any more. Called on the calling thread only,
+   * with user. It must return normally: no C++ exception, no longjmp.
+   */
+  bool (*send)(void *user, size_t to, const int64_t *numbers, size_t length);
+  /**
+   * Waits for length numbers, as many as the process `from` sends, and puts them into numbers;
+   * else as send.
+   */
+  bool (*receive)(void *user, size_t from, int64_t *numbers, size_t length);
+  /**
+   * Passed on to both, never looked at. May be NULL.
+   */
+  void *user;
+} midsurface_exchange;
+
+/**
  * A label volume: an integer a voxel, 0 for background; or a map, such as a probability, of which
  * everything at or above a threshold is label 1. Borrowed for a call, never copied.
  */
@@ -257,6 +286,27 @@ typedef struct midsurface_options {
    */
   void *user;
 } midsurface_options;
+
+/**
+ * What one process holds of a label volume. Pieces may overlap, as where neighbours share a layer
+ * of voxels, and all together have to cover the whole.
+ */
+typedef struct midsurface_piece {
+  /**
+   * The piece as a volume by itself; its extent_start tells where in the whole it lies. length
+   * 0: this process holds no voxel; then only spacing, origin and direction are looked at. These
+   * have to be the same in all processes.
+   */
+  struct midsurface_volume volume;
+  /**
+   * Number of voxels of the whole volume along x, y, z.
+   */
+  size_t whole_dimensions[3];
+  /**
+   * Index of its first voxel along x, y, z in the image's extent.
+   */
+  int64_t whole_extent_start[3];
+} midsurface_piece;
 
 /**
  * The arrays of a mesh: a view into it, valid until it is freed. Arrays of length 0 are NULL.
@@ -494,6 +544,18 @@ const char *midsurface_error_message(const struct midsurface_error *error);
 void midsurface_error_free(struct midsurface_error *error);
 
 /**
+ * Tells the other processes that this one cannot call the function that they call with such an
+ * exchange, and why: theirs then fails with that message, and does not wait for ever.
+ *
+ * exchange: how this process reaches the others.
+ * message: what is amiss, UTF-8.
+ * error: where an error goes; may be NULL.
+ */
+enum midsurface_status midsurface_abandon(const struct midsurface_exchange *exchange,
+                                          const char *message,
+                                          struct midsurface_error **error);
+
+/**
  * Finds the distinct labels of a volume, ascending, background (0) left out: one pass over the
  * scalars. A volume without labels gives an empty list.
  *
@@ -534,6 +596,25 @@ enum midsurface_status midsurface_extract(const struct midsurface_volume *volume
                                           const struct midsurface_options *options,
                                           struct midsurface_mesh **out,
                                           struct midsurface_error **error);
+
+/**
+ * Extracts the mid-surface of a label volume of which each of several processes holds a piece. Each
+ * process gets the mesh of whole components, numbered as in the whole volume, or an empty one: the
+ * meshes share no points, and all together are midsurface_extract's mesh. All processes have to
+ * call this at once, with the same options; where one fails, all do. Warnings about the whole
+ * volume come in the first process.
+ *
+ * piece: what this process holds, as described there.
+ * exchange: how it reaches the others.
+ * options: as described there.
+ * out: where the new mesh goes.
+ * error: where an error goes; may be NULL.
+ */
+enum midsurface_status midsurface_extract_piece(const struct midsurface_piece *piece,
+                                                const struct midsurface_exchange *exchange,
+                                                const struct midsurface_options *options,
+                                                struct midsurface_mesh **out,
+                                                struct midsurface_error **error);
 
 /**
  * Shows the arrays of a mesh. Nothing is copied.

@@ -1,5 +1,6 @@
 //! From raw pointers to checked values. An error names the argument as the header does.
 
+use std::ffi::{c_char, CStr};
 use std::ptr;
 
 use midsurface::Error;
@@ -57,6 +58,17 @@ pub(crate) unsafe fn slice<'a, T>(
     check_array(pointer, length, name)?;
     // SAFETY: not null, aligned, no longer than an object may be, and valid by contract.
     Ok(unsafe { std::slice::from_raw_parts(pointer, length) })
+}
+
+/// Copies a C string; what is not UTF-8 is replaced.
+///
+/// # Safety
+/// `pointer` is null or points to a string that ends with a NUL.
+pub(crate) unsafe fn text(pointer: *const c_char, name: &str) -> Result<String, midsurface_error> {
+    check(pointer, name)?;
+    // SAFETY: not null, and a string by this function's contract.
+    let text = unsafe { CStr::from_ptr(pointer) };
+    Ok(text.to_string_lossy().into_owned())
 }
 
 /// Borrows an array that may be left out.

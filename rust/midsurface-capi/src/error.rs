@@ -1,6 +1,7 @@
 //! Status codes, the error object and the panic guard.
 
 use std::any::Any;
+use std::borrow::Cow;
 use std::ffi::{c_char, CString};
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::ptr;
@@ -38,6 +39,11 @@ impl midsurface_error {
             status,
             message: c_string(&message.into()),
         }
+    }
+
+    /// The message.
+    pub(crate) fn text(&self) -> Cow<'_, str> {
+        self.message.to_string_lossy()
     }
 
     pub(crate) fn invalid(message: impl Into<String>) -> Self {

@@ -10,10 +10,12 @@
 
 mod arguments;
 mod error;
+mod exchange;
 mod handles;
 mod labels;
 mod mesh;
 mod options;
+mod piece;
 mod polyline_arrays;
 mod polylines;
 mod ridge_field;

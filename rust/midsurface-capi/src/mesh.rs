@@ -4,8 +4,10 @@ use midsurface::Mesh;
 
 use crate::arguments::{address, collected, object};
 use crate::error::{guarded, midsurface_error, midsurface_status};
-use crate::handles::{make_of_volume, release, show};
-use crate::options::midsurface_options;
+use crate::exchange::{self, midsurface_exchange};
+use crate::handles::{make, make_of_volume, release, show};
+use crate::options::{self, midsurface_options};
+use crate::piece::{self, midsurface_piece};
 use crate::volume::midsurface_volume;
 
 /// A triangle mesh: a 2-manifold with boundary, consistently wound in each component. Freed with
@@ -103,6 +105,44 @@ pub unsafe extern "C" fn midsurface_extract(
     unsafe {
         make_of_volume(volume, options, out, error, |volume, options, callbacks| {
             midsurface_mesh::new(midsurface::extract(volume, options, callbacks)?)
+        })
+    }
+}
+
+/// Extracts the mid-surface of a label volume of which each of several processes holds a piece. Each
+/// process gets the mesh of whole components, numbered as in the whole volume, or an empty one: the
+/// meshes share no points, and all together are midsurface_extract's mesh. All processes have to
+/// call this at once, with the same options; where one fails, all do. Warnings about the whole
+/// volume come in the first process.
+///
+/// piece: what this process holds, as described there.
+/// exchange: how it reaches the others.
+/// options: as described there.
+/// out: where the new mesh goes.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_extract_piece(
+    piece: *const midsurface_piece,
+    exchange: *const midsurface_exchange,
+    options: *const midsurface_options,
+    out: *mut *mut midsurface_mesh,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        make(out, error, || {
+            let mut team = exchange::read(exchange)?;
+            let arguments = piece::read(piece)
+                .and_then(|(piece, whole)| Ok((piece, whole, options::read(options)?)));
+            let (piece, whole, (options, mut callbacks)) =
+                arguments.inspect_err(|error| midsurface::abandon(&mut team, &error.text()))?;
+            midsurface_mesh::new(midsurface::extract_piece(
+                piece.as_ref(),
+                &whole,
+                &options,
+                &mut team,
+                &mut callbacks,
+            )?)
         })
     }
 }

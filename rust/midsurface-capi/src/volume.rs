@@ -119,19 +119,24 @@ fn scalar_type(number: u32) -> Result<midsurface_scalar_type, midsurface_error> 
     })
 }
 
-/// # Safety
-/// As for [`read`], the scalars being of type `T`.
-unsafe fn borrow<'a, T: Label + 'a>(
-    volume: &midsurface_volume,
-) -> Result<(Volume<'a>, Range<usize>), midsurface_error> {
+/// Where the voxels lie.
+pub(crate) fn grid(volume: &midsurface_volume) -> Grid {
     let d = volume.direction;
-    let grid = Grid {
+    Grid {
         dimensions: volume.dimensions,
         extent_start: volume.extent_start,
         spacing: volume.spacing,
         origin: volume.origin,
         direction: [[d[0], d[1], d[2]], [d[3], d[4], d[5]], [d[6], d[7], d[8]]],
-    };
+    }
+}
+
+/// # Safety
+/// As for [`read`], the scalars being of type `T`.
+unsafe fn borrow<'a, T: Label + 'a>(
+    volume: &midsurface_volume,
+) -> Result<(Volume<'a>, Range<usize>), midsurface_error> {
+    let grid = grid(volume);
     if grid.voxel_count()? != volume.length {
         return Err(Error::BufferLength {
             dimensions: volume.dimensions,

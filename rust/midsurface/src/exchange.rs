@@ -21,6 +21,12 @@ pub trait Exchange {
     fn receive(&mut self, from: usize, numbers: &mut [i64]) -> bool;
 }
 
+/// Tells the other processes that this one cannot take part in the run that they are about to
+/// start, or that they have started, and why. They end with an error that holds the message.
+pub fn abandon(exchange: &mut dyn Exchange, message: &str) {
+    Team::new(exchange).tell_failure(FAILURE, message);
+}
+
 /// The process that decides what has to be decided in one place, and that talks to the user.
 pub(crate) const FIRST: usize = 0;
 
