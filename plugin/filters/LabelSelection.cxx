@@ -256,3 +256,25 @@ void LabelSelection::Apply(FilterRun& run, const SegmentationVolume& volume) con
     run.Options.Labels = std::move(wanted);
   }
 }
+
+//------------------------------------------------------------------------------
+void LabelSelection::ApplyToAll(FilterRun& run, const std::string& arrayName) const
+{
+  if (this->Request == Meaning::All)
+  {
+    return;
+  }
+  if (this->Request == Meaning::Listed)
+  {
+    this->CheckPresence(arrayName);
+  }
+  std::vector<int64_t> wanted;
+  for (const auto& entry : this->Table.Entries())
+  {
+    if (this->IsTicked(entry.first))
+    {
+      wanted.push_back(entry.first);
+    }
+  }
+  run.Options.Labels = std::move(wanted);
+}

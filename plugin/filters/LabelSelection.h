@@ -51,6 +51,9 @@ public:
    */
   void Apply(FilterRun& run, const SegmentationVolume& volume) const;
 
+  /** The same for an array called `arrayName` that is spread over processes. */
+  void ApplyToAll(FilterRun& run, const std::string& arrayName) const;
+
 private:
   enum class Meaning
   {

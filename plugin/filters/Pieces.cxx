@@ -153,11 +153,15 @@ void CheckFit(const std::vector<Header>& headers, const int whole[6])
       "The segmentation is spread over several processes, whose parts do not "
       "make up one image: save it to a file and open that.");
   }
+}
+
+void CheckSize(const int whole[6])
+{
   if (Size(whole) > mostValues)
   {
     throw std::runtime_error("The segmentation has " + std::to_string(Size(whole)) +
-      " voxels; spread over several processes it may have " + std::to_string(mostValues) +
-      " at most. Run with one process.");
+      " voxels; spread over several processes this filter takes " + std::to_string(mostValues) +
+      " at most. Run with one process, or use Mid-Surface.");
   }
 }
 
@@ -223,6 +227,22 @@ void Pieces::CheckInput(vtkInformation* output, vtkDataSet* input)
 }
 
 //------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageData> Pieces::Frame(
+  vtkInformation* source, vtkImageData* piece, const ChosenArray& chosen, int& association)
+{
+  const std::vector<Header> headers = GatherHeaders(Describe(source, piece, chosen));
+  if (headers.empty())
+  {
+    return nullptr;
+  }
+  int whole[6];
+  std::copy_n(headers.front().Whole, 6, whole);
+  CheckFit(headers, whole);
+  association = static_cast<int>(headers.front().Association);
+  return MakeImage(headers.front(), whole);
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> Pieces::Join(
   vtkInformation* source, vtkImageData* piece, const ChosenArray& chosen, bool everywhere)
 {
@@ -235,6 +255,7 @@ vtkSmartPointer<vtkImageData> Pieces::Join(
   int whole[6];
   std::copy_n(headers.front().Whole, 6, whole);
   CheckFit(headers, whole);
+  CheckSize(whole);
   const char* name = own.IsEmpty() ? chosen.Name.c_str() : chosen.Array->GetName();
   auto empty = MakeArray(headers.front(), nullptr);
   auto received = MakeArray(headers.front(), nullptr);

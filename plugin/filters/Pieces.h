@@ -9,9 +9,8 @@ class vtkInformation;
 struct ChosenArray;
 
 /**
- * Who works where the pipeline is updated in pieces, one a process. A surface within a part depends
- * on what lies around it: the first process works on all of the input, and the others wait. All
- * processes have to call these functions at once.
+ * Who works where the pipeline is updated in pieces, one a process. All processes have to call
+ * these functions at once.
  */
 namespace Pieces
 {
@@ -32,6 +31,14 @@ int Result(vtkInformation* output, int result);
 
 /** @throws std::runtime_error in all processes where another than the first has cells. */
 void CheckInput(vtkInformation* output, vtkDataSet* input);
+
+/**
+ * The image that the pieces of the array `chosen` make up, without any array; null where all pieces
+ * lack it. `piece` may be empty, and comes from `source`. `association` becomes that of the array.
+ * @throws std::runtime_error in all processes where the pieces do not fit together.
+ */
+vtkSmartPointer<vtkImageData> Frame(
+  vtkInformation* source, vtkImageData* piece, const ChosenArray& chosen, int& association);
 
 /**
  * The array `chosen` of all pieces in an image of its own; null where all pieces lack it. `piece`

@@ -151,6 +151,33 @@ ChosenArray FindFirstArray(vtkImageData* image)
 }
 
 //------------------------------------------------------------------------------
+void DescribeGrid(
+  vtkImageData* image, bool onCells, const double spacing[3], midsurface_volume& volume)
+{
+  int extent[6];
+  int points[3];
+  double origin[3];
+  image->GetExtent(extent);
+  image->GetDimensions(points);
+  image->GetOrigin(origin);
+  const double* direction = image->GetDirectionMatrix()->GetData();
+  std::copy_n(direction, 9, volume.direction);
+  std::copy_n(origin, 3, volume.origin);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    volume.spacing[axis] = spacing[axis];
+    volume.extent_start[axis] = extent[2 * axis];
+    // An image that is one point thick still has one layer of cells, which lies on its points.
+    const bool shrinks = onCells && points[axis] > 1;
+    volume.dimensions[axis] = static_cast<size_t>(points[axis] - (shrinks ? 1 : 0));
+    for (int row = 0; shrinks && row < 3; ++row)
+    {
+      volume.origin[row] += direction[3 * row + axis] * 0.5 * spacing[axis];
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 SegmentationVolume::SegmentationVolume(vtkImageData* image, const ChosenArray& chosen)
   : Source(image)
   , Labels(chosen.Labels())
@@ -172,7 +199,7 @@ SegmentationVolume::SegmentationVolume(vtkImageData* image, const ChosenArray& c
       " components, but a segmentation has one label a voxel: choose another array.");
   }
   this->DescribeScalars();
-  this->DescribeGrid(image->GetSpacing());
+  DescribeGrid(image, this->CellData, image->GetSpacing(), this->Volume);
   this->Volume.use_threshold = chosen.Threshold.has_value();
   this->Volume.threshold = chosen.Threshold.value_or(0);
 }
@@ -180,7 +207,7 @@ SegmentationVolume::SegmentationVolume(vtkImageData* image, const ChosenArray& c
 //------------------------------------------------------------------------------
 void SegmentationVolume::SetSpacing(const double spacing[3])
 {
-  this->DescribeGrid(spacing);
+  DescribeGrid(this->Source, this->CellData, spacing, this->Volume);
 }
 
 //------------------------------------------------------------------------------
@@ -200,30 +227,4 @@ void SegmentationVolume::DescribeScalars()
   }
   this->Volume.length = static_cast<size_t>(this->Contiguous->GetNumberOfTuples());
   this->Volume.scalars = this->Volume.length ? this->Contiguous->GetVoidPointer(0) : nullptr;
-}
-
-//------------------------------------------------------------------------------
-void SegmentationVolume::DescribeGrid(const double spacing[3])
-{
-  int extent[6];
-  int points[3];
-  double origin[3];
-  this->Source->GetExtent(extent);
-  this->Source->GetDimensions(points);
-  this->Source->GetOrigin(origin);
-  const double* direction = this->Source->GetDirectionMatrix()->GetData();
-  std::copy_n(direction, 9, this->Volume.direction);
-  std::copy_n(origin, 3, this->Volume.origin);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    this->Volume.spacing[axis] = spacing[axis];
-    this->Volume.extent_start[axis] = extent[2 * axis];
-    // An image that is one point thick still has one layer of cells, which lies on its points.
-    const bool shrinks = this->CellData && points[axis] > 1;
-    this->Volume.dimensions[axis] = static_cast<size_t>(points[axis] - (shrinks ? 1 : 0));
-    for (int row = 0; shrinks && row < 3; ++row)
-    {
-      this->Volume.origin[row] += direction[3 * row + axis] * 0.5 * spacing[axis];
-    }
-  }
 }

@@ -39,6 +39,13 @@ ChosenArray FindFirstArray(vtkImageData* image);
 using ArrayFinder = std::function<ChosenArray(vtkImageData*)>;
 
 /**
+ * Where the voxels lie, on the points of `image` or the centres of its cells, had it this spacing:
+ * fills dimensions, extent_start, spacing, origin and direction.
+ */
+void DescribeGrid(
+  vtkImageData* image, bool onCells, const double spacing[3], midsurface_volume& volume);
+
+/**
  * The label array of an image and where its voxels lie, as the core wants them described.
  *
  * Labels on points lie on the image's points, labels on cells on the centres of its cells. The
@@ -63,7 +70,6 @@ public:
 
 private:
   void DescribeScalars();
-  void DescribeGrid(const double spacing[3]);
 
   vtkImageData* Source;
   vtkDataArray* Labels;

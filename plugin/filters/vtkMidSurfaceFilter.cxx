@@ -44,11 +44,26 @@ int vtkMidSurfaceFilter::FillOutputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-void vtkMidSurfaceFilter::Extract(
-  FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output)
+void vtkMidSurfaceFilter::SetOptions(FilterRun& run) const
 {
   run.Options.Method = static_cast<uint32_t>(this->Method);
   run.Options.EdgeLength = this->EdgeLength;
+}
+
+//------------------------------------------------------------------------------
+void vtkMidSurfaceFilter::Extract(
+  FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output)
+{
+  this->SetOptions(run);
   const midsurface::Mesh mesh = midsurface::Extract(volume.Description(), run.Options);
+  CopyMesh(midsurface::Arrays(mesh), vtkPolyData::SafeDownCast(output));
+}
+
+//------------------------------------------------------------------------------
+void vtkMidSurfaceFilter::ExtractPiece(FilterRun& run, const midsurface_piece& piece,
+  const midsurface_exchange& exchange, vtkDataObject* output)
+{
+  this->SetOptions(run);
+  const midsurface::Mesh mesh = midsurface::ExtractPiece(piece, exchange, run.Options);
   CopyMesh(midsurface::Arrays(mesh), vtkPolyData::SafeDownCast(output));
 }

@@ -3,6 +3,7 @@
 #include "FilterRun.h"
 #include "LabelTable.h"
 #include "Pieces.h"
+#include "ProcessExchange.h"
 #include "TriangleInput.h"
 
 #include "vtkDoubleArray.h"
@@ -18,6 +19,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -118,6 +120,19 @@ void AddQuality(vtkTable* table, const std::vector<Row>& rows)
   AddNumbers(table, "ShareOver120", rows, [](const Row& row) { return row.share_over_120; });
   AddNumbers(table, "V567", rows, [](const Row& row) { return row.valence_567; });
 }
+/** The rows of the whole mesh, of which `input` may be the piece of this process. */
+std::vector<Row> MeasureAll(vtkInformation* output, vtkPolyData* input)
+{
+  if (!Pieces::AreShared(output))
+  {
+    Pieces::CheckInput(output, input);
+    return midsurface::Measure(TriangleInput(input).Mesh());
+  }
+  const ProcessExchange exchange;
+  std::optional<TriangleInput> triangles;
+  exchange.Guard([&] { triangles.emplace(input); });
+  return midsurface::MeasurePieces(triangles->Mesh(), exchange.Functions());
+}
 } // namespace
 
 //------------------------------------------------------------------------------
@@ -147,13 +162,11 @@ int vtkMidSurfaceStatistics::RequestData(
   vtkTable* output = vtkTable::GetData(outputVector);
   vtkInformation* outputInformation = outputVector->GetInformationObject(0);
   const int result = FilterRun::Execute(this, 0, output, [=](FilterRun&) {
-    Pieces::CheckInput(outputInformation, input);
+    const std::vector<Row> rows = MeasureAll(outputInformation, input);
     if (!Pieces::IsFirst(outputInformation))
     {
       return;
     }
-    const TriangleInput triangles(input);
-    const std::vector<Row> rows = midsurface::Measure(triangles.Mesh());
     AddScope(output, rows, input->GetFieldData());
     AddSize(output, rows);
     AddThickness(output, rows);

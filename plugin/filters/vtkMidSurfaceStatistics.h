@@ -19,6 +19,9 @@
  * - `Qmin`, `Qavg`: least and mean shape factor of the triangles, 1 for equilateral ones.
  *   `MeanSmallestAngle` in degrees; `ShareUnder30` and `ShareOver120` of the angles; `V567`: the
  *   share of the points off the boundary that have five, six or seven edges. Shares are 0 to 1.
+ *
+ * Under MPI the mesh may be spread over the processes, each component on one of them, as
+ * vtkMidSurfaceFilter leaves it: the first process makes the table of all.
  */
 
 #ifndef vtkMidSurfaceStatistics_h

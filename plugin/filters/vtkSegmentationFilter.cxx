@@ -4,6 +4,7 @@
 #include "ImageSpacing.h"
 #include "LabelSelection.h"
 #include "Pieces.h"
+#include "ProcessExchange.h"
 #include "SegmentationVolume.h"
 
 #include "vtkCommand.h"
@@ -16,6 +17,9 @@
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <optional>
 
 namespace
 {
@@ -37,6 +41,37 @@ const int* WholeExtent(vtkInformationVector** inputVector, vtkImageData* input)
 bool IsImage(vtkInformation* output)
 {
   return vtkImageData::SafeDownCast(vtkDataObject::GetData(output)) != nullptr;
+}
+
+constexpr const char* noVoxels = "The input has no voxels: the output is empty.";
+
+/** Says why no process has labels. */
+void ExplainAbsence(
+  const FilterRun& run, vtkImageData* input, const ChosenArray& chosen, bool isFirst)
+{
+  if (input->GetNumberOfPoints() > 0)
+  {
+    SegmentationVolume(input, chosen);
+  }
+  if (isFirst)
+  {
+    run.Warn(noVoxels);
+  }
+}
+
+/** What this process holds of `whole`: `volume`, or nothing. */
+midsurface_piece DescribePiece(
+  vtkImageData* whole, bool onCells, const double spacing[3], const SegmentationVolume* volume)
+{
+  midsurface_volume all{};
+  DescribeGrid(whole, onCells, spacing, all);
+  midsurface_piece piece{};
+  std::copy_n(all.dimensions, 3, piece.whole_dimensions);
+  std::copy_n(all.extent_start, 3, piece.whole_extent_start);
+  piece.volume = volume ? volume->Description() : all;
+  std::copy_n(all.spacing, 3, piece.volume.spacing);
+  std::copy_n(all.origin, 3, piece.volume.origin);
+  return piece;
 }
 
 /** Leaves of `field`, made of a whole image, what belongs to `piece`, beside what that holds. */
@@ -280,6 +315,16 @@ int vtkSegmentationFilter::RequestUpdateExtent(
 int vtkSegmentationFilter::RequestData(
   vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  const bool isShared = this->CanExtractPieces() && !this->Internals->HasBlocks &&
+    Pieces::AreShared(outputVector->GetInformationObject(0));
+  return isShared ? this->RequestShare(inputVector, outputVector)
+                  : this->RequestAll(inputVector, outputVector);
+}
+
+//------------------------------------------------------------------------------
+int vtkSegmentationFilter::RequestAll(
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
   vtkImageData* piece = vtkImageData::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
   vtkInformation* outputInformation = outputVector->GetInformationObject(0);
@@ -294,7 +339,7 @@ int vtkSegmentationFilter::RequestData(
     {
       if (!this->Internals->HasBlocks && Pieces::IsFirst(outputInformation))
       {
-        run.Warn("The input has no voxels: the output is empty.");
+        run.Warn(noVoxels);
       }
       return;
     }
@@ -312,6 +357,53 @@ int vtkSegmentationFilter::RequestData(
   this->FitToRequest(vtkImageData::SafeDownCast(output), piece, outputInformation);
   return Pieces::Result(outputInformation, result);
 }
+
+//------------------------------------------------------------------------------
+int vtkSegmentationFilter::RequestShare(
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkImageData* input = vtkImageData::GetData(inputVector[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  vtkInformation* outputInformation = outputVector->GetInformationObject(0);
+  const int result = FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
+    const ChosenArray chosen = vtkInternals::Find(this, input);
+    int association = chosen.Association;
+    const vtkSmartPointer<vtkImageData> whole =
+      Pieces::Frame(inputVector[0]->GetInformationObject(0), input, chosen, association);
+    if (!whole)
+    {
+      ExplainAbsence(run, input, chosen, Pieces::IsFirst(outputInformation));
+      return;
+    }
+    const ProcessExchange exchange;
+    run.Options.Threads = static_cast<uint32_t>(exchange.ShareThreads(this->Threads));
+    std::optional<SegmentationVolume> volume;
+    exchange.Guard([&] {
+      if (input->GetNumberOfPoints() > 0)
+      {
+        volume.emplace(input, chosen);
+      }
+      this->Internals->Labels.ApplyToAll(run, chosen.Name);
+    });
+    const ImageSpacing spacing(whole->GetExtent(), whole->GetSpacing());
+    const bool isStretched = this->Spacing == AUTOMATIC && spacing.IsStretched();
+    if (isStretched && exchange.IsFirst())
+    {
+      run.Warn(spacing.Explain(whole->GetOrigin()[2]).c_str());
+    }
+    const midsurface_piece piece =
+      DescribePiece(whole, association == vtkDataObject::FIELD_ASSOCIATION_CELLS,
+        isStretched ? spacing.GetMeant() : whole->GetSpacing(), volume ? &*volume : nullptr);
+    this->ExtractPiece(run, piece, exchange.Functions(), output);
+    output->GetFieldData()->PassData(input->GetFieldData());
+  });
+  return Pieces::Result(outputInformation, result);
+}
+
+//------------------------------------------------------------------------------
+void vtkSegmentationFilter::ExtractPiece(
+  FilterRun&, const midsurface_piece&, const midsurface_exchange&, vtkDataObject*)
+{}
 
 //------------------------------------------------------------------------------
 void vtkSegmentationFilter::FitToRequest(

@@ -13,10 +13,12 @@
  * name, or both as in "3: outer membrane".
  *
  * Under MPI (a vtkMultiProcessController with many processes) all processes update the filter
- * together. A surface within a part of the volume depends on what lies around that part: the first
- * process collects the labels of all and makes the whole surface, the others make none. Where the
- * output is an image, each process collects all labels and keeps its part of the output. Blocks of
- * a collection are worked on by the process that holds them.
+ * together. What is made of a part of the volume depends on what lies around that part. A filter
+ * that can, vtkMidSurfaceFilter, deals out the connected components: each process makes the output
+ * of whole ones, and none ever holds the volume. For the others the first process collects the
+ * labels of all and makes the whole output, the others make none; where the output is an image,
+ * each process collects all labels and keeps its part of the output. Blocks of a collection are
+ * worked on by the process that holds them.
  *
  * Bad input is reported by an error or warning of the filter, and the output is empty (an image
  * has no arrays). So it is, with a warning, after an abort.
@@ -30,6 +32,8 @@
 
 #include <memory>
 
+struct midsurface_exchange;
+struct midsurface_piece;
 class FilterRun;
 class SegmentationVolume;
 class vtkDataArraySelection;
@@ -124,6 +128,17 @@ protected:
    */
   virtual void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) = 0;
 
+  /**
+   * Whether ExtractPiece may be called where many processes hold a piece each.
+   */
+  virtual bool CanExtractPieces() const { return false; }
+
+  /**
+   * Fills `output` with this process's share. All processes call it at once.
+   */
+  virtual void ExtractPiece(FilterRun& run, const midsurface_piece& piece,
+    const midsurface_exchange& exchange, vtkDataObject* output);
+
   int Threads = 0;
   int Spacing = AUTOMATIC;
   bool UseThreshold = false;
@@ -133,6 +148,8 @@ private:
   vtkSegmentationFilter(const vtkSegmentationFilter&) = delete;
   void operator=(const vtkSegmentationFilter&) = delete;
 
+  int RequestAll(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
+  int RequestShare(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   void FitToRequest(vtkImageData* output, vtkImageData* piece, vtkInformation* outputInformation);
   void LabelsChanged();
   void RunStarts();

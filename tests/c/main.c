@@ -7,6 +7,7 @@ void test_runs(void);
 void test_callbacks(void);
 void test_polylines(void);
 void test_statistics(void);
+void test_pieces(void);
 
 int main(void)
 {
@@ -16,5 +17,6 @@ int main(void)
   test_callbacks();
   test_polylines();
   test_statistics();
+  test_pieces();
   return finish_tests();
 }

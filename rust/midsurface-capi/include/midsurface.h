@@ -735,6 +735,21 @@ enum midsurface_status midsurface_measure(const struct midsurface_triangle_mesh 
                                           struct midsurface_error **error);
 
 /**
+ * Measures a mesh of which each of several processes holds whole components, as
+ * midsurface_extract_piece makes them: as midsurface_measure does, in all. All processes have to
+ * call this at once; the first gets the table, the others an empty one.
+ *
+ * mesh: what this process holds, maybe nothing.
+ * exchange: how it reaches the others.
+ * out: where the new table goes.
+ * error: where an error goes; may be NULL.
+ */
+enum midsurface_status midsurface_measure_pieces(const struct midsurface_triangle_mesh *mesh,
+                                                 const struct midsurface_exchange *exchange,
+                                                 struct midsurface_statistics **out,
+                                                 struct midsurface_error **error);
+
+/**
  * Number of rows of a table; 0 for NULL.
  */
 size_t midsurface_statistics_length(const struct midsurface_statistics *statistics);

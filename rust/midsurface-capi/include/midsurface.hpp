@@ -167,6 +167,23 @@ inline Mesh Extract(const midsurface_volume& volume, const Options& options = {}
   return detail::Make<Mesh>(midsurface_extract, &volume, options);
 }
 
+/// The components of this process, of a volume that many hold in pieces.
+inline Mesh ExtractPiece(
+  const midsurface_piece& piece, const midsurface_exchange& exchange, const Options& options = {})
+{
+  const auto extract = [&exchange](const midsurface_piece* input, const midsurface_options* run,
+                         midsurface_mesh** out, midsurface_error** error) {
+    return midsurface_extract_piece(input, &exchange, run, out, error);
+  };
+  return detail::Make<Mesh>(extract, &piece, options);
+}
+
+/// Tells the other processes that this one does not make the call that they make, and why.
+inline void Abandon(const midsurface_exchange& exchange, const char* message)
+{
+  detail::Call(midsurface_abandon, &exchange, message);
+}
+
 inline Polylines ExtractPolylines(const midsurface_volume& volume, const Options& options = {})
 {
   return detail::Make<Polylines>(midsurface_extract_polylines, &volume, options);
@@ -188,14 +205,30 @@ inline void RidgeField(const midsurface_volume& volume, float* distance, float* 
   run.Finish(status, error);
 }
 
+namespace detail
+{
+inline std::vector<midsurface_statistics_row> Rows(const Statistics& table)
+{
+  const midsurface_statistics_row* rows = midsurface_statistics_rows(table.get());
+  return { rows, rows + midsurface_statistics_length(table.get()) };
+}
+} // namespace detail
+
 /// The table of a mesh's figures.
 inline std::vector<midsurface_statistics_row> Measure(const midsurface_triangle_mesh& mesh)
 {
   midsurface_statistics* table = nullptr;
   detail::Call(midsurface_measure, &mesh, &table);
-  const Statistics owner(table);
-  const midsurface_statistics_row* rows = midsurface_statistics_rows(table);
-  return { rows, rows + midsurface_statistics_length(table) };
+  return detail::Rows(Statistics(table));
+}
+
+/// The table of a mesh that many processes hold, for the first of them; none for the others.
+inline std::vector<midsurface_statistics_row> MeasurePieces(
+  const midsurface_triangle_mesh& mesh, const midsurface_exchange& exchange)
+{
+  midsurface_statistics* table = nullptr;
+  detail::Call(midsurface_measure_pieces, &mesh, &exchange, &table);
+  return detail::Rows(Statistics(table));
 }
 
 /// Copies arrays into polylines.

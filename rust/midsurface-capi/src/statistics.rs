@@ -4,6 +4,7 @@ use midsurface::{Scope, Statistics, TriangleMesh};
 
 use crate::arguments::{address, collected, optional_slice, slice, value};
 use crate::error::{midsurface_error, midsurface_status};
+use crate::exchange::{self, midsurface_exchange};
 use crate::handles::{look, make, release};
 
 /// A triangle mesh of any origin. Borrowed for a call, never copied.
@@ -132,19 +133,62 @@ pub unsafe extern "C" fn midsurface_measure(
     // SAFETY: the pointers are as the header describes.
     unsafe {
         make(out, error, || {
-            let mesh = value(mesh, "mesh")?;
-            let (points, triangles) = (mesh.point_count, mesh.triangle_count);
-            let rows = midsurface::statistics(&TriangleMesh {
-                points: slice(mesh.points.cast(), points, "mesh.points")?,
-                triangles: slice(mesh.triangles.cast(), triangles, "mesh.triangles")?,
-                thickness: optional_slice(mesh.thickness, points, "mesh.thickness")?,
-                labels: optional_slice(mesh.labels, triangles, "mesh.labels")?,
-                components: optional_slice(mesh.components, triangles, "mesh.components")?,
-            })?;
-            let rows = collected(rows.len(), rows.into_iter().map(Into::into))?;
-            Ok(midsurface_statistics(rows))
+            let mesh = read(mesh)?;
+            table(midsurface::statistics(&mesh)?)
         })
     }
+}
+
+/// Measures a mesh of which each of several processes holds whole components, as
+/// midsurface_extract_piece makes them: as midsurface_measure does, in all. All processes have to
+/// call this at once; the first gets the table, the others an empty one.
+///
+/// mesh: what this process holds, maybe nothing.
+/// exchange: how it reaches the others.
+/// out: where the new table goes.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_measure_pieces(
+    mesh: *const midsurface_triangle_mesh,
+    exchange: *const midsurface_exchange,
+    out: *mut *mut midsurface_statistics,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        make(out, error, || {
+            let mut team = exchange::read(exchange)?;
+            let mesh =
+                read(mesh).inspect_err(|error| midsurface::abandon(&mut team, &error.text()))?;
+            table(midsurface::statistics_of_pieces(&mesh, &mut team)?)
+        })
+    }
+}
+
+/// The core's mesh.
+///
+/// # Safety
+/// `mesh` is null or as the header describes, and its arrays outlive `'a`.
+unsafe fn read<'a>(
+    mesh: *const midsurface_triangle_mesh,
+) -> Result<TriangleMesh<'a>, midsurface_error> {
+    // SAFETY: the same contract.
+    unsafe {
+        let mesh = value(mesh, "mesh")?;
+        let (points, triangles) = (mesh.point_count, mesh.triangle_count);
+        Ok(TriangleMesh {
+            points: slice(mesh.points.cast(), points, "mesh.points")?,
+            triangles: slice(mesh.triangles.cast(), triangles, "mesh.triangles")?,
+            thickness: optional_slice(mesh.thickness, points, "mesh.thickness")?,
+            labels: optional_slice(mesh.labels, triangles, "mesh.labels")?,
+            components: optional_slice(mesh.components, triangles, "mesh.components")?,
+        })
+    }
+}
+
+fn table(rows: Vec<Statistics>) -> Result<midsurface_statistics, midsurface_error> {
+    let rows = collected(rows.len(), rows.into_iter().map(Into::into))?;
+    Ok(midsurface_statistics(rows))
 }
 
 /// Number of rows of a table; 0 for NULL.

@@ -118,7 +118,9 @@ pub use mesh::{InvariantViolation, Mesh};
 pub use polylines::{Polyline, Polylines};
 pub use quality::Quality;
 use reading::read_parts;
-pub use statistics::{statistics, Scope, Statistics, ThicknessFigures, TriangleMesh};
+pub use statistics::{
+    statistics, statistics_of_pieces, Scope, Statistics, ThicknessFigures, TriangleMesh,
+};
 pub use volume::{Label, Scalars, Volume};
 
 /// How the mid-surface is found.

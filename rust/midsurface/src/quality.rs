@@ -30,44 +30,115 @@ impl Mesh {
             .triangles
             .iter()
             .map(|t| t.map(|p| self.points[p as usize].map(f64::from)));
-        Quality {
-            valence_567: valence_567(
-                &Edges::new(&self.triangles, self.points.len()),
-                self.points.len(),
-            ),
-            ..Quality::of_shapes(corners)
-        }
+        let edges = Edges::new(&self.triangles, self.points.len());
+        QualitySums::of(corners, &edges, self.points.len()).quality()
     }
 }
 
-impl Quality {
-    /// The figures that need no neighbours, of triangles given by their corners.
-    pub(crate) fn of_shapes(triangles: impl ExactSizeIterator<Item = [Vec3; 3]>) -> Self {
-        let count = triangles.len() as f64;
-        let mut quality = Self::default();
-        if triangles.len() == 0 {
-            return quality;
-        }
-        quality.smallest = f64::INFINITY;
+/// What [`Quality`] is made of: figures that add up over the pieces of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct QualitySums {
+    triangles: f64,
+    area: f64,
+    smallest: f64,
+    q: f64,
+    smallest_angle: f64,
+    under_30: f64,
+    over_120: f64,
+    interior: f64,
+    valence_567: f64,
+}
+
+impl QualitySums {
+    /// Of triangles given by their corners, with the edges of a mesh of `points` points, all in use.
+    pub fn of(triangles: impl Iterator<Item = [Vec3; 3]>, edges: &Edges, points: usize) -> Self {
+        let [interior, valence_567] = valences(edges, points);
+        let mut sums = Self::from([
+            0.0,
+            0.0,
+            f64::INFINITY,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            interior,
+            valence_567,
+        ]);
         for triangle in triangles {
             let (area, q, angles) = shape(triangle);
-            quality.area += area;
-            quality.smallest = quality.smallest.min(q);
-            quality.mean += q / count;
-            let least = angles.iter().copied().fold(f64::INFINITY, f64::min);
-            quality.mean_smallest_angle += least / count;
-            let share = |f: &dyn Fn(f64) -> bool| {
-                angles.iter().filter(|&&a| f(a)).count() as f64 / (3.0 * count)
-            };
-            quality.share_under_30 += share(&|a| a < 30.0);
-            quality.share_over_120 += share(&|a| a > 120.0);
+            let count = |f: &dyn Fn(f64) -> bool| angles.iter().filter(|&&a| f(a)).count() as f64;
+            sums.triangles += 1.0;
+            sums.area += area;
+            sums.smallest = sums.smallest.min(q);
+            sums.q += q;
+            sums.smallest_angle += angles.iter().copied().fold(f64::INFINITY, f64::min);
+            sums.under_30 += count(&|a| a < 30.0);
+            sums.over_120 += count(&|a| a > 120.0);
         }
-        quality
+        sums
+    }
+
+    /// The sums of two pieces that share no points.
+    pub fn add(&self, other: &Self) -> Self {
+        let (a, b) = (self.numbers(), other.numbers());
+        let mut sums: [f64; Self::LENGTH] = std::array::from_fn(|i| a[i] + b[i]);
+        sums[2] = self.smallest.min(other.smallest);
+        Self::from(sums)
+    }
+
+    /// How many numbers there are.
+    pub const LENGTH: usize = 9;
+
+    pub fn numbers(&self) -> [f64; Self::LENGTH] {
+        [
+            self.triangles,
+            self.area,
+            self.smallest,
+            self.q,
+            self.smallest_angle,
+            self.under_30,
+            self.over_120,
+            self.interior,
+            self.valence_567,
+        ]
+    }
+
+    pub fn quality(&self) -> Quality {
+        if self.triangles == 0.0 {
+            return Quality::default();
+        }
+        Quality {
+            area: self.area,
+            smallest: self.smallest,
+            mean: self.q / self.triangles,
+            mean_smallest_angle: self.smallest_angle / self.triangles,
+            share_under_30: self.under_30 / (3.0 * self.triangles),
+            share_over_120: self.over_120 / (3.0 * self.triangles),
+            valence_567: self.valence_567 / self.interior.max(1.0),
+        }
     }
 }
 
-/// Share of the points off the boundary that have five to seven edges; all points must be in use.
-pub(crate) fn valence_567(edges: &Edges, points: usize) -> f64 {
+impl From<[f64; QualitySums::LENGTH]> for QualitySums {
+    fn from(numbers: [f64; Self::LENGTH]) -> Self {
+        let [triangles, area, smallest, q, smallest_angle, under_30, over_120, interior, valence_567] =
+            numbers;
+        Self {
+            triangles,
+            area,
+            smallest,
+            q,
+            smallest_angle,
+            under_30,
+            over_120,
+            interior,
+            valence_567,
+        }
+    }
+}
+
+/// Number of points off the boundary, and of those among them that have five to seven edges.
+fn valences(edges: &Edges, points: usize) -> [f64; 2] {
     let mut valence = vec![0u32; points];
     let mut boundary = vec![false; points];
     for (a, b, group) in edges.groups() {
@@ -81,7 +152,7 @@ pub(crate) fn valence_567(edges: &Edges, points: usize) -> f64 {
         .iter()
         .zip(&boundary)
         .filter(|(v, b)| !**b && (5..=7).contains(*v));
-    good.count() as f64 / interior.max(1) as f64
+    [interior as f64, good.count() as f64]
 }
 
 /// Area, Q and the angles in degrees.

@@ -2,12 +2,16 @@
 //!
 //! A mesh of any origin will do: edges with more than two triangles count once, and a point that
 //! no triangle uses counts for nothing. Labels and components share points only where the mesh
-//! does; each row counts the points that its own triangles use.
+//! does; each row counts the points that its own triangles use. Where processes hold whole components
+//! each, the first adds up what the others measured.
+
+use std::collections::BTreeMap;
 
 use crate::error::{reserved, zeros, Error, Result};
+use crate::exchange::{Exchange, Team};
 use crate::grid::{length, sub, Vec3};
 use crate::halfedge::Edges;
-use crate::quality::{valence_567, Quality};
+use crate::quality::{Quality, QualitySums};
 
 /// A triangle mesh, borrowed, with what may be known about its points and triangles.
 #[derive(Debug, Clone, Copy, Default)]
@@ -38,6 +42,17 @@ pub enum Scope {
         /// The component.
         component: i64,
     },
+}
+
+impl Scope {
+    /// Where in the table the row comes.
+    fn place(self) -> (u8, Option<i64>, Option<i64>) {
+        match self {
+            Self::Total => (0, None, None),
+            Self::Label(label) => (1, Some(label), None),
+            Self::Component { label, component } => (1, label, Some(component)),
+        }
+    }
 }
 
 /// Mean and quantiles of the thickness at the points, world units.
@@ -78,6 +93,59 @@ const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 /// Where an array has another length than the points or triangles, an index names no point, a
 /// coordinate is no number, or memory is refused.
 pub fn statistics(mesh: &TriangleMesh) -> Result<Vec<Statistics>> {
+    Ok(measure(mesh)?.into_iter().map(Row::finish).collect())
+}
+
+/// The table of a mesh of which each of several processes holds whole components. All processes have
+/// to call this at once; the first gets the table, the others an empty one.
+///
+/// # Errors
+/// As [`statistics`], in all processes where one fails, and where several hold triangles of one
+/// component, or of a mesh without components.
+pub fn statistics_of_pieces(
+    mesh: &TriangleMesh,
+    exchange: &mut dyn Exchange,
+) -> Result<Vec<Statistics>> {
+    let mut team = Team::new(exchange);
+    let result = measure_in_team(mesh, &mut team);
+    team.close(result)
+}
+
+fn measure_in_team(mesh: &TriangleMesh, team: &mut Team) -> Result<Vec<Statistics>> {
+    let mut message = Vec::new();
+    for row in measure(mesh)? {
+        row.pack(&mut message)?;
+    }
+    let of_all = team.gather(message)?;
+    let mut table: BTreeMap<_, Row> = BTreeMap::new();
+    let mut holders = 0;
+    for message in &of_all {
+        let mut rest = message.as_slice();
+        while let Some(row) = Row::unpack(&mut rest) {
+            let key = row.scope.place();
+            let is_whole = matches!(row.scope, Scope::Component { .. });
+            holders += usize::from(row.scope == Scope::Total && row.triangles > 0);
+            match table.remove(&key) {
+                None => table.insert(key, row),
+                Some(_) if is_whole => return Err(spread()),
+                Some(before) => table.insert(key, before.add(row)?),
+            };
+        }
+    }
+    // Without components nobody can tell what hangs together.
+    if holders > 1 && table.keys().all(|(_, _, component)| component.is_none()) {
+        return Err(spread());
+    }
+    Ok(table.into_values().map(Row::finish).collect())
+}
+
+fn spread() -> Error {
+    let text =
+        "a component is spread over several processes: save the mesh to a file and open that";
+    Error::Triangles(text.to_owned())
+}
+
+fn measure(mesh: &TriangleMesh) -> Result<Vec<Row>> {
     check(mesh)?;
     let mut order = reserved(mesh.triangles.len())?;
     order.extend(0..mesh.triangles.len() as u32);
@@ -148,7 +216,7 @@ impl<'a> Measure<'a> {
         })
     }
 
-    fn row(&mut self, scope: Scope, part: &[u32]) -> Result<Statistics> {
+    fn row(&mut self, scope: Scope, part: &[u32]) -> Result<Row> {
         let mut triangles = reserved(part.len())?;
         let mut used: Vec<usize> = reserved(self.mesh.points.len().min(3 * part.len()))?;
         for &t in part {
@@ -172,7 +240,7 @@ impl<'a> Measure<'a> {
             .map(|(a, b, _)| (a, b))
             .collect();
         let corners = triangles.iter().map(|t: &[u32; 3]| t.map(point));
-        Ok(Statistics {
+        Ok(Row {
             scope,
             points: used.len(),
             triangles: triangles.len(),
@@ -184,16 +252,14 @@ impl<'a> Measure<'a> {
                 .sum(),
             boundary_loops: count_connected(&boundary, used.len())?,
             thickness: self.thickness(&used)?,
-            quality: Quality {
-                valence_567: valence_567(&edges, used.len()),
-                ..Quality::of_shapes(corners)
-            },
+            quality: QualitySums::of(corners, &edges, used.len()),
         })
     }
 
-    fn thickness(&self, used: &[usize]) -> Result<Option<ThicknessFigures>> {
+    /// The thickness where it is known.
+    fn thickness(&self, used: &[usize]) -> Result<Vec<f64>> {
         let Some(thickness) = self.mesh.thickness else {
-            return Ok(None);
+            return Ok(Vec::new());
         };
         let mut known: Vec<f64> = reserved(used.len())?;
         known.extend(
@@ -201,12 +267,117 @@ impl<'a> Measure<'a> {
                 .map(|&p| f64::from(thickness[p]))
                 .filter(|t| t.is_finite()),
         );
-        known.sort_by(f64::total_cmp);
-        Ok((!known.is_empty()).then(|| ThicknessFigures {
-            mean: known.iter().sum::<f64>() / known.len() as f64,
-            quantiles: QUANTILES.map(|share| quantile(&known, share)),
-        }))
+        Ok(known)
     }
+}
+
+/// A row in the making: what adds up over the pieces of a mesh.
+struct Row {
+    scope: Scope,
+    points: usize,
+    triangles: usize,
+    euler_number: i64,
+    boundary_length: f64,
+    boundary_loops: usize,
+    thickness: Vec<f64>,
+    quality: QualitySums,
+}
+
+impl Row {
+    fn add(mut self, other: Self) -> Result<Self> {
+        let bytes = other.thickness.len() * std::mem::size_of::<f64>();
+        let room = self.thickness.try_reserve(other.thickness.len());
+        room.map_err(|_| Error::OutOfMemory(bytes))?;
+        self.thickness.extend(other.thickness);
+        Ok(Self {
+            points: self.points + other.points,
+            triangles: self.triangles + other.triangles,
+            euler_number: self.euler_number + other.euler_number,
+            boundary_length: self.boundary_length + other.boundary_length,
+            boundary_loops: self.boundary_loops + other.boundary_loops,
+            quality: self.quality.add(&other.quality),
+            ..self
+        })
+    }
+
+    fn finish(mut self) -> Statistics {
+        let known = &mut self.thickness;
+        known.sort_by(f64::total_cmp);
+        let thickness = (!known.is_empty()).then(|| ThicknessFigures {
+            mean: known.iter().sum::<f64>() / known.len() as f64,
+            quantiles: QUANTILES.map(|share| quantile(known, share)),
+        });
+        Statistics {
+            scope: self.scope,
+            points: self.points,
+            triangles: self.triangles,
+            euler_number: self.euler_number,
+            boundary_length: self.boundary_length,
+            boundary_loops: self.boundary_loops,
+            thickness,
+            quality: self.quality.quality(),
+        }
+    }
+
+    /// Appends the row to a message for another process; floats go as their bits.
+    fn pack(&self, message: &mut Vec<i64>) -> Result<()> {
+        let (kind, label, component) = self.scope.place();
+        let length = 9 + QualitySums::LENGTH + self.thickness.len();
+        let room = message.try_reserve(length);
+        room.map_err(|_| Error::OutOfMemory(length * std::mem::size_of::<i64>()))?;
+        let counts = [
+            self.points,
+            self.triangles,
+            self.boundary_loops,
+            self.thickness.len(),
+        ];
+        let has = i64::from(label.is_some()) + 2 * i64::from(component.is_some());
+        message.extend([
+            4 * i64::from(kind) + has,
+            label.unwrap_or(0),
+            component.unwrap_or(0),
+        ]);
+        message.extend(counts.map(|n| n as i64));
+        message.push(self.euler_number);
+        let floats = [self.boundary_length]
+            .into_iter()
+            .chain(self.quality.numbers());
+        message.extend(floats.chain(self.thickness.iter().copied()).map(to_bits));
+        Ok(())
+    }
+
+    /// Takes a row from the beginning of a message.
+    fn unpack(message: &mut &[i64]) -> Option<Self> {
+        let (head, rest) = message.split_first_chunk::<8>()?;
+        let [scope, label, component, points, triangles, loops, known, euler_number] = *head;
+        let (floats, rest) = rest.split_first_chunk::<{ 1 + QualitySums::LENGTH }>()?;
+        let (thickness, rest) = rest.split_at_checked(known as usize)?;
+        *message = rest;
+        let label = (scope & 1 != 0).then_some(label);
+        let floats = floats.map(from_bits);
+        Some(Self {
+            scope: match (scope / 4, label, scope & 2 != 0) {
+                (0, _, _) => Scope::Total,
+                (_, Some(label), false) => Scope::Label(label),
+                _ => Scope::Component { label, component },
+            },
+            points: points as usize,
+            triangles: triangles as usize,
+            euler_number,
+            boundary_length: floats[0],
+            boundary_loops: loops as usize,
+            thickness: thickness.iter().copied().map(from_bits).collect(),
+            quality: QualitySums::from(std::array::from_fn(|i| floats[1 + i])),
+        })
+    }
+}
+
+fn to_bits(value: f64) -> i64 {
+    value.to_bits() as i64
+}
+
+fn from_bits(bits: i64) -> f64 {
+    f64::from_bits(bits as u64)
 }
 
 /// The quantile of ascending values, linear between neighbours.

@@ -3,7 +3,8 @@
 use std::sync::mpsc::{channel, Receiver, Sender};
 
 use midsurface::{
-    extract, extract_piece, Error, Exchange, Grid, Mesh, Method, Options, Result, Volume,
+    extract, extract_piece, statistics, statistics_of_pieces, Error, Exchange, Grid, Mesh, Method,
+    Options, Result, Statistics, TriangleMesh, Volume,
 };
 use phantoms::*;
 use proptest::prelude::*;
@@ -208,6 +209,67 @@ fn any_number_of_pieces_gives_the_mesh_of_the_whole() {
             let busy = meshes.iter().filter(|mesh| !mesh.triangles.is_empty());
             assert!(busy.count() >= pieces.len().min(2), "one does all the work");
         }
+    }
+}
+
+/// The table of a mesh, or of a piece of one.
+fn measure(mesh: &Mesh, exchange: Option<&mut Channels>) -> Vec<Statistics> {
+    let points: Vec<_> = mesh.points.iter().map(|p| p.map(f64::from)).collect();
+    let triangles: Vec<_> = mesh.triangles.iter().map(|t| t.map(i64::from)).collect();
+    let components: Vec<_> = mesh.components.iter().copied().map(i64::from).collect();
+    let mesh = TriangleMesh {
+        points: &points,
+        triangles: &triangles,
+        thickness: Some(&mesh.thickness),
+        labels: Some(&mesh.labels),
+        components: Some(&components),
+    };
+    let table = match exchange {
+        None => statistics(&mesh),
+        Some(exchange) => statistics_of_pieces(&mesh, exchange),
+    };
+    table.expect("a table")
+}
+
+#[test]
+fn the_table_of_all_pieces_is_that_of_the_whole() {
+    let dimensions = [96, 72, 40];
+    let labels = mitochondrion(dimensions, 0.05, 11);
+    let whole = Grid::new(dimensions);
+    let options = options(Method::RidgeSurface);
+    let volume = Volume::new(&labels, whole.clone()).expect("a volume");
+    let mesh = extract(&volume, &options, &mut Recorder::new(usize::MAX)).expect("a mesh");
+    let pieces = compare(&labels, &whole, &blocks(dimensions, [3, 1, 1], 1), &options);
+    let tables: Vec<Vec<Statistics>> = std::thread::scope(|scope| {
+        let threads: Vec<_> = connect(3)
+            .into_iter()
+            .zip(&pieces)
+            .map(|(mut end, piece)| scope.spawn(move || measure(piece, Some(&mut end))))
+            .collect();
+        let tables = threads.into_iter().map(|thread| thread.join());
+        tables.map(|table| table.expect("no panic")).collect()
+    });
+    assert!(tables[1].is_empty() && tables[2].is_empty());
+    let expected = measure(&mesh, None);
+    assert_eq!(tables[0].len(), expected.len());
+    for (row, expected) in tables[0].iter().zip(&expected) {
+        let close =
+            |a: f64, b: f64| assert!((a - b).abs() <= 1e-9 * b.abs(), "{row:?} {expected:?}");
+        close(row.boundary_length, expected.boundary_length);
+        close(row.quality.area, expected.quality.area);
+        close(
+            row.quality.mean_smallest_angle,
+            expected.quality.mean_smallest_angle,
+        );
+        close(row.quality.valence_567, expected.quality.valence_567);
+        let thickness = |row: &Statistics| row.thickness.expect("known");
+        close(thickness(row).mean, thickness(expected).mean);
+        assert_eq!(thickness(row).quantiles, thickness(expected).quantiles);
+        let counts = |row: &Statistics| {
+            let sizes = (row.points, row.triangles, row.boundary_loops);
+            (row.scope, sizes, row.euler_number)
+        };
+        assert_eq!(counts(row), counts(expected));
     }
 }
 

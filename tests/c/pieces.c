@@ -1,0 +1,273 @@
+/* Volumes and meshes in pieces, by two threads in place of two processes. */
+#include "check.h"
+#include "meshes.h"
+#include "volumes.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <threads.h>
+
+/* One message on its way, each way. */
+typedef struct
+{
+  mtx_t mutex;
+  cnd_t changed;
+  const int64_t* numbers[2];
+  size_t length[2];
+} Link;
+
+typedef struct
+{
+  Link* link;
+  size_t process;
+} End;
+
+static bool send_numbers(void* user, size_t to, const int64_t* numbers, size_t length)
+{
+  End* end = user;
+  Link* link = end->link;
+  mtx_lock(&link->mutex);
+  link->numbers[to] = numbers;
+  link->length[to] = length;
+  cnd_broadcast(&link->changed);
+  while (link->numbers[to])
+  {
+    cnd_wait(&link->changed, &link->mutex);
+  }
+  mtx_unlock(&link->mutex);
+  return true;
+}
+
+static bool receive_numbers(void* user, size_t from, int64_t* numbers, size_t length)
+{
+  End* end = user;
+  Link* link = end->link;
+  (void)from;
+  mtx_lock(&link->mutex);
+  while (!link->numbers[end->process])
+  {
+    cnd_wait(&link->changed, &link->mutex);
+  }
+  const bool fits = link->length[end->process] == length;
+  if (fits)
+  {
+    memcpy(numbers, link->numbers[end->process], length * sizeof *numbers);
+  }
+  link->numbers[end->process] = NULL;
+  cnd_broadcast(&link->changed);
+  mtx_unlock(&link->mutex);
+  return fits;
+}
+
+/* What one process has, and what it gets. */
+typedef struct
+{
+  End end;
+  const midsurface_piece* piece;
+  const midsurface_triangle_mesh* triangles;
+  const char* excuse;
+  midsurface_mesh* mesh;
+  midsurface_statistics* table;
+  midsurface_error* error;
+  midsurface_status status;
+} Process;
+
+static int work(void* argument)
+{
+  Process* process = argument;
+  const midsurface_options options = midsurface_options_default();
+  const midsurface_exchange exchange = {
+    .processes = 2,
+    .process = process->end.process,
+    .send = send_numbers,
+    .receive = receive_numbers,
+    .user = &process->end,
+  };
+  if (process->excuse)
+  {
+    process->status = midsurface_abandon(&exchange, process->excuse, &process->error);
+  }
+  else if (process->triangles)
+  {
+    process->status =
+      midsurface_measure_pieces(process->triangles, &exchange, &process->table, &process->error);
+  }
+  else
+  {
+    process->status = midsurface_extract_piece(
+      process->piece, &exchange, &options, &process->mesh, &process->error);
+  }
+  return 0;
+}
+
+static void run_both(Process processes[2])
+{
+  Link link = { .numbers = { NULL, NULL } };
+  mtx_init(&link.mutex, mtx_plain);
+  cnd_init(&link.changed);
+  thrd_t other;
+  for (size_t i = 0; i < 2; i++)
+  {
+    processes[i].end = (End){ &link, i };
+  }
+  if (CHECK(thrd_create(&other, work, &processes[1]) == thrd_success))
+  {
+    work(&processes[0]);
+    thrd_join(other, NULL);
+  }
+  cnd_destroy(&link.changed);
+  mtx_destroy(&link.mutex);
+}
+
+/* Slices from .. to of a volume of DEPTH. */
+static midsurface_piece slices(const midsurface_volume* whole, size_t from, size_t to)
+{
+  midsurface_piece piece = { .volume = *whole, .whole_dimensions = { WIDTH, HEIGHT, DEPTH } };
+  piece.volume.scalars = (const uint8_t*)whole->scalars + from * WIDTH * HEIGHT;
+  piece.volume.dimensions[2] = to - from;
+  piece.volume.length = (to - from) * WIDTH * HEIGHT;
+  piece.volume.extent_start[2] = (int64_t)from;
+  return piece;
+}
+
+static void each_process_gets_whole_components(void)
+{
+  static uint8_t scalars[VOXELS];
+  const midsurface_volume whole = two_sheets(scalars);
+  const midsurface_options options = midsurface_options_default();
+  const midsurface_piece pieces[] = { slices(&whole, 0, 7), slices(&whole, 6, DEPTH) };
+  Process processes[2] = { { .piece = &pieces[0] }, { .piece = &pieces[1] } };
+  run_both(processes);
+  midsurface_mesh* all = extracted(&whole, &options);
+  size_t points = 0, triangles = 0;
+  for (int i = 0; i < 2; i++)
+  {
+    if (CHECK(processes[i].status == MIDSURFACE_STATUS_OK))
+    {
+      const midsurface_mesh_arrays arrays = arrays_of(processes[i].mesh);
+      points += arrays.point_count;
+      triangles += arrays.triangle_count;
+      for (size_t t = 1; t < arrays.triangle_count; t++)
+      {
+        CHECK(arrays.components[t] == arrays.components[0]);
+      }
+    }
+    midsurface_mesh_free(processes[i].mesh);
+  }
+  CHECK(points == arrays_of(all).point_count);
+  CHECK(triangles == arrays_of(all).triangle_count);
+  midsurface_mesh_free(all);
+}
+
+static void a_process_may_have_no_piece(void)
+{
+  static uint8_t scalars[VOXELS];
+  const midsurface_volume whole = two_sheets(scalars);
+  midsurface_piece pieces[] = { slices(&whole, 0, 0), slices(&whole, 0, DEPTH) };
+  pieces[0].volume.scalars = NULL;
+  Process processes[2] = { { .piece = &pieces[0] }, { .piece = &pieces[1] } };
+  run_both(processes);
+  for (int i = 0; i < 2; i++)
+  {
+    CHECK(processes[i].status == MIDSURFACE_STATUS_OK);
+    CHECK(arrays_of(processes[i].mesh).triangle_count > 0);
+    midsurface_mesh_free(processes[i].mesh);
+  }
+}
+
+/* Both must fail, the second with what happened in the first. */
+static void check_failures(Process processes[2], const char* first, const char* second)
+{
+  run_both(processes);
+  const char* texts[] = { first, second };
+  for (int i = 0; i < 2; i++)
+  {
+    CHECK(texts[i] == NULL || strstr(midsurface_error_message(processes[i].error), texts[i]));
+    CHECK(processes[i].mesh == NULL);
+    midsurface_error_free(processes[i].error);
+  }
+}
+
+static void a_failure_of_one_reaches_the_other(void)
+{
+  static uint8_t scalars[VOXELS];
+  const midsurface_volume whole = two_sheets(scalars);
+  midsurface_piece pieces[] = { slices(&whole, 0, 7), slices(&whole, 6, DEPTH) };
+  pieces[0].volume.length -= 1;
+  Process processes[2] = { { .piece = &pieces[0] }, { .piece = &pieces[1] } };
+  check_failures(processes, "its array holds", "process 0 failed: the volume is said to have");
+
+  Process excused[2] = { { .excuse = "no array" }, { .piece = &pieces[1] } };
+  check_failures(excused, NULL, "process 0 failed: no array");
+
+  const midsurface_piece gap[] = { slices(&whole, 0, 5), slices(&whole, 6, DEPTH) };
+  Process apart[2] = { { .piece = &gap[0] }, { .piece = &gap[1] } };
+  check_failures(apart, "do not make up one image", "do not make up one image");
+}
+
+static void the_first_process_gets_the_table_of_all(void)
+{
+  const double points[] = { 0, 0, 0, 2, 0, 0, 0, 2, 0 };
+  const int64_t triangle[] = { 0, 1, 2 };
+  const int64_t labels[] = { 4 };
+  const int64_t components[] = { 0, 1 };
+  midsurface_triangle_mesh meshes[2];
+  for (int i = 0; i < 2; i++)
+  {
+    meshes[i] = (midsurface_triangle_mesh){
+      .points = points,
+      .point_count = 3,
+      .triangles = triangle,
+      .triangle_count = 1,
+      .labels = labels,
+      .components = &components[i],
+    };
+  }
+  Process processes[2] = { { .triangles = &meshes[0] }, { .triangles = &meshes[1] } };
+  run_both(processes);
+  CHECK(processes[0].status == MIDSURFACE_STATUS_OK && processes[1].status == MIDSURFACE_STATUS_OK);
+  CHECK(midsurface_statistics_length(processes[1].table) == 0);
+  if (CHECK(midsurface_statistics_length(processes[0].table) == 4))
+  {
+    const midsurface_statistics_row* rows = midsurface_statistics_rows(processes[0].table);
+    CHECK(rows[0].area == 4.0 && rows[0].points == 6 && rows[0].euler_number == 2);
+    CHECK(rows[1].scope == MIDSURFACE_SCOPE_LABEL && rows[1].triangles == 2);
+    CHECK(rows[2].component == 0 && rows[3].component == 1 && rows[3].area == 2.0);
+  }
+  midsurface_statistics_free(processes[0].table);
+  midsurface_statistics_free(processes[1].table);
+
+  meshes[1].components = components;
+  Process split[2] = { { .triangles = &meshes[0] }, { .triangles = &meshes[1] } };
+  check_failures(split, "spread over several processes", "process 0 failed");
+}
+
+static void an_exchange_that_cannot_be_used_is_refused(void)
+{
+  static uint8_t scalars[VOXELS];
+  const midsurface_volume whole = two_sheets(scalars);
+  const midsurface_piece piece = slices(&whole, 0, DEPTH);
+  const midsurface_options options = midsurface_options_default();
+  midsurface_exchange exchange = { .processes = 1, .send = send_numbers };
+  midsurface_error* error = NULL;
+  midsurface_mesh* mesh = STALE(midsurface_mesh);
+  CHECK_INVALID(
+    midsurface_extract_piece(&piece, &exchange, &options, &mesh, &error), error, "receive");
+  CHECK(mesh == NULL);
+  CHECK_INVALID(midsurface_extract_piece(&piece, NULL, &options, &mesh, &error), error, "exchange");
+  exchange.receive = receive_numbers;
+  CHECK_INVALID(midsurface_extract_piece(NULL, &exchange, &options, &mesh, &error), error, "piece");
+  CHECK_INVALID(midsurface_abandon(&exchange, NULL, &error), error, "message");
+  exchange.process = 1;
+  CHECK_INVALID(
+    midsurface_extract_piece(&piece, &exchange, &options, &mesh, &error), error, "process");
+}
+
+void test_pieces(void)
+{
+  RUN(each_process_gets_whole_components);
+  RUN(a_process_may_have_no_piece);
+  RUN(a_failure_of_one_reaches_the_other);
+  RUN(the_first_process_gets_the_table_of_all);
+  RUN(an_exchange_that_cannot_be_used_is_refused);
+}
