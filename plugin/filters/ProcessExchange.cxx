@@ -3,13 +3,13 @@
 #include "midsurface.hpp"
 
 #include "vtkMultiProcessController.h"
+#include "vtkMultiThreader.h"
 
 #include "vtksys/SystemInformation.hxx"
 
 #include <algorithm>
 #include <exception>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace
@@ -67,6 +67,6 @@ int ProcessExchange::ShareThreads(int wanted) const
   std::vector<long long> names(this->Target.processes);
   Controller()->AllGather(&own, names.data(), 1);
   const auto here = std::count(names.begin(), names.end(), own);
-  const auto cores = static_cast<long>(std::thread::hardware_concurrency());
+  const long cores = vtkMultiThreader::GetGlobalDefaultNumberOfThreads();
   return wanted > 0 ? wanted : static_cast<int>(std::max(1L, cores / here));
 }

@@ -34,8 +34,10 @@
 //! Arrays are in the order x, y, z, volumes have shape (z, y, x) with x fastest. Lengths inside
 //! are in units of the finest spacing, so that the same voxels in other units give the same mesh;
 //! `grid.rs` tells the frames. Everything between scan and polylines happens in batches of whole
-//! components, so that memory follows the largest batch, and depends on places in the volume
-//! only, never on the order of work: any number of threads gives the same mesh.
+//! components (`batches.rs`), so that memory follows the largest batch, and depends on places in the
+//! volume only, never on the order of work: any number of threads gives the same mesh. So does any
+//! number of processes that hold a piece of the volume each: they swap runs (`exchange.rs`) until
+//! each has whole components (`territory.rs`, `pieces.rs`), and what follows is the same.
 #![forbid(unsafe_code)]
 
 mod batches;

@@ -37,7 +37,7 @@ mod tests;
 
 use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{length, sub, Vec3};
+use crate::grid::Vec3;
 use crate::halfedge::ends;
 use blocks::{Blocks, Surface};
 use patch::{Kind, Patch, Vertex};
@@ -66,6 +66,8 @@ pub(crate) struct Origin {
 const BLOCK: f64 = 20.0;
 /// Shifts of the grid of blocks from pass to pass, in sides along each axis.
 const SHIFTS: [f64; 5] = [0.0, 0.5, 0.25, 0.75, 0.4];
+/// What is reached at once: about twice the edges of a surface through voxels of size 1.
+const FINE: f64 = 1.8;
 /// Passes at twice the final edge length, and at the final one.
 const COARSE_PASSES: usize = 4;
 const FINE_PASSES: usize = 3;
@@ -91,7 +93,7 @@ pub(crate) fn remesh(
     if triangles.is_empty() {
         return Ok(Remeshed::default());
     }
-    let coarse = schedule(points, triangles, 2.0 * edge_length);
+    let coarse = schedule(2.0 * edge_length);
     let over_blocks = 2 * (coarse.len() + FINE_PASSES);
     execution.still(reference::PASSES + over_blocks + OTHER_PASSES);
     let reference = Reference::new(points, triangles, edge_length, execution)?;
@@ -141,17 +143,12 @@ fn improve(patch: &mut Patch, relaxations: usize) {
 }
 
 /// The longest edge wanted in each pass. Much coarser meshes are reached by doubling, so that
-/// blocks hold about as much in each pass.
-fn schedule(points: &[Vec3], triangles: &[[u32; 3]], edge_length: f64) -> Vec<f64> {
-    let way = |e: u32| {
-        let (a, b) = ends(triangles, e);
-        length(sub(points[b as usize], points[a as usize]))
-    };
-    let count = 3 * triangles.len() as u32;
-    let mean = (0..count).map(way).sum::<f64>() / f64::from(count);
+/// blocks hold about as much in each pass. It does not depend on the mesh that came in: what becomes
+/// of a component must not depend on the others.
+fn schedule(edge_length: f64) -> Vec<f64> {
     let mut passes = vec![edge_length; COARSE_PASSES];
     let mut coarser = 0.5 * edge_length;
-    while coarser > 2.0 * mean && passes.len() < 64 {
+    while coarser > FINE && passes.len() < 64 {
         passes.insert(0, coarser);
         coarser *= 0.5;
     }

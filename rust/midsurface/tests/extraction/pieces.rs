@@ -4,7 +4,7 @@ use std::sync::mpsc::{channel, Receiver, Sender};
 
 use midsurface::{
     extract, extract_piece, statistics, statistics_of_pieces, Error, Exchange, Grid, Mesh, Method,
-    Options, Result, Statistics, TriangleMesh, Volume,
+    Observer, Options, Result, Statistics, TriangleMesh, Volume,
 };
 use phantoms::*;
 use proptest::prelude::*;
@@ -333,6 +333,50 @@ fn a_cancel_in_one_process_ends_all() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn a_panic_in_one_process_ends_all() {
+    struct Panicking(usize);
+    impl Observer for Panicking {
+        fn progress(&mut self, _: f64, _: &str) -> bool {
+            assert_ne!(self.0, 0, "a panic on purpose");
+            self.0 -= 1;
+            true
+        }
+        fn warning(&mut self, _: &str) {}
+    }
+    let dimensions = [48, 40, 36];
+    let labels = mitochondrion(dimensions, 0.0, 3);
+    let volume = Volume::new(&labels, Grid::new(dimensions)).expect("a volume");
+    for calls in [0, 2, 9] {
+        std::thread::scope(|scope| {
+            let volume = &volume;
+            let work = |mut end: Channels| {
+                let calls = if end.process == 1 { calls } else { usize::MAX };
+                let grid = volume.grid();
+                let (options, mut observer) = (Options::default(), Panicking(calls));
+                extract_piece(Some(volume), grid, &options, &mut end, &mut observer)
+            };
+            let threads: Vec<_> = connect(3)
+                .into_iter()
+                .map(|end| scope.spawn(move || work(end)))
+                .collect();
+            for (process, thread) in threads.into_iter().enumerate() {
+                match thread.join() {
+                    Ok(outcome) => {
+                        let message = "internal error".to_owned();
+                        let expected = Error::Elsewhere {
+                            process: 1,
+                            message,
+                        };
+                        assert_eq!(outcome, Err(expected), "process {process}");
+                    }
+                    Err(_) => assert_eq!(process, 1),
+                }
+            }
+        });
     }
 }
 
