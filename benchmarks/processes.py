@@ -1,0 +1,74 @@
+"""Measures the memory of several processes that share a volume of a thousand million voxels.
+
+    mpiexec -n 4 pvbatch --symmetric benchmarks/processes.py PLUGIN FOLDER
+
+The volume, 1024 x 1024 x 1024 bytes with 48 vesicles, is written to FOLDER where it is not there yet
+(with one process). Each process prints its peak memory beyond ParaView: its part of the volume and
+its share of the work.
+"""
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+from paraview import simple
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+SIDE = 1024
+VESICLES = 48
+# Each vesicle has a cube of the volume to itself.
+CELL = 128
+RADIUS, THICKNESS = 40.0, 4.0
+
+
+def vesicle():
+    z, y, x = np.mgrid[:CELL, :CELL, :CELL] - 0.5 * CELL
+    return (abs(np.sqrt(x * x + y * y + z * z) - RADIUS) <= 0.5 * THICKNESS).astype(np.uint8)
+
+
+def write_volume(path):
+    volume = np.memmap(path, np.uint8, "w+", shape=(SIDE, SIDE, SIDE))
+    cells = SIDE // CELL
+    # A step without a common divisor spreads them evenly.
+    for cell in (11 * np.arange(VESICLES)) % cells**3:
+        z, y, x = (CELL * np.array(np.unravel_index(cell, (cells,) * 3))).tolist()
+        volume[z : z + CELL, y : y + CELL, x : x + CELL] = vesicle()
+    volume.flush()
+
+
+def memory(field):
+    """A field of /proc/self/status in MB."""
+    with open("/proc/self/status") as status:
+        line = next(line for line in status if line.startswith(field + ":"))
+    return int(line.split()[1]) / 1000
+
+
+def main():
+    plugin, folder = sys.argv[1:]
+    controller = vtkMultiProcessController.GetGlobalController()
+    path = Path(folder) / "vesicles.raw"
+    if not path.exists():
+        assert controller.GetNumberOfProcesses() == 1, "write the volume with one process first"
+        write_volume(path)
+    simple.LoadPlugin(plugin, remote=False, ns=vars(simple))
+    before = memory("VmRSS")
+    reader = simple.ImageReader(
+        FileNames=[str(path)],
+        FileDimensionality=3,
+        DataScalarType="unsigned char",
+        DataExtent=[0, SIDE - 1] * 3,
+    )
+    mesh = simple.MidSurface(Input=reader)
+    start = time.perf_counter()
+    mesh.UpdatePipeline()
+    seconds = time.perf_counter() - start
+    piece = mesh.GetClientSideObject().GetOutputDataObject(0)
+    print(
+        f"process {controller.GetLocalProcessId()} of {controller.GetNumberOfProcesses()}: "
+        f"{memory('VmHWM') - before:.0f} MB, {seconds:.0f} s, {piece.GetNumberOfCells():,} triangles",
+        flush=True,
+    )
+
+
+if __name__ == "__main__":
+    main()
