@@ -81,7 +81,8 @@ impl<'a> Ray<'a> {
     fn crossing(&self, mut low: (f64, f64), mut high: (f64, f64)) -> f64 {
         let between = |low: (f64, f64), high: (f64, f64)| {
             let (below, above) = (0.5 - high.1, low.1 - 0.5);
-            low.0 + (high.0 - low.0) * above / (above + below)
+            // Both are 0 where the mask is one half to the last bit.
+            low.0 + (high.0 - low.0) * above / (above + below).max(f64::MIN_POSITIVE)
         };
         let mut was_inside = None;
         for _ in 0..ROUNDS {
