@@ -1,5 +1,7 @@
 //! The result: a triangle mesh, and the invariants it keeps.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use crate::components::DisjointSets;
@@ -270,6 +272,11 @@ fn line_of_points(polylines: &Polylines) -> Vec<usize> {
 /// What the low-pass asks about the lines of the points, which are copies of `source`.
 fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Vec<LineOfPoint> {
     let mut known = vec![LineOfPoint::default(); polylines.points.len()];
+    let mut slices: BTreeMap<u32, [i64; 2]> = BTreeMap::new();
+    for line in &polylines.lines {
+        let ends = slices.entry(line.component).or_insert([line.slice; 2]);
+        *ends = [ends[0].min(line.slice), ends[1].max(line.slice)];
+    }
     for (i, line) in polylines.lines.iter().enumerate() {
         let range = line.first..line.first + line.count;
         let points = &polylines.points[range.clone()];
@@ -284,6 +291,7 @@ fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Vec<LineOfPoint> {
                 edge,
                 across,
                 room: polylines.border_distance[p].into(),
+                at_end: slices[&line.component].contains(&line.slice),
             };
         }
     }

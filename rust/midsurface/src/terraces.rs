@@ -43,6 +43,9 @@ pub(crate) struct LineOfPoint {
     pub across: Vec3,
     /// Farthest the point may move, so that it stays in the volume.
     pub room: f64,
+    /// Whether it is in its component's first or last slice. Where the surface turns back there, so
+    /// that the point is on no boundary, it stays: beyond there may be no volume.
+    pub at_end: bool,
 }
 
 /// Neighbours of every point, with their weights in K. A point on a boundary has
@@ -80,6 +83,9 @@ pub(crate) fn flatten_terraces(
         } else {
             normals[i]
         };
+        if lines[i].at_end && !neighbours.boundary[i] {
+            continue;
+        }
         let most = MOST * lines[i].edge * f64::from(rings[i]) / f64::from(RINGS);
         let most = most.min(lines[i].room / length(way));
         *point = along(*point, moves[i].clamp(-most, most), way);
