@@ -79,14 +79,9 @@ impl<'a> Ray<'a> {
 
     /// Where between two lengths, each with the mask there, the label ends.
     fn crossing(&self, mut low: (f64, f64), mut high: (f64, f64)) -> f64 {
-        let between = |low: (f64, f64), high: (f64, f64)| {
-            let (below, above) = (0.5 - high.1, low.1 - 0.5);
-            // Both are 0 where the mask is one half to the last bit.
-            low.0 + (high.0 - low.0) * above / (above + below).max(f64::MIN_POSITIVE)
-        };
         let mut was_inside = None;
         for _ in 0..ROUNDS {
-            let t = between(low, high);
+            let t = false_position(low, high);
             let Some((mask, _)) = self.look(t) else {
                 break;
             };
@@ -101,7 +96,7 @@ impl<'a> Ray<'a> {
             }
             was_inside = Some(inside);
         }
-        between(low, high)
+        false_position(low, high)
     }
 
     fn at(&self, t: f64) -> Vec3 {
@@ -149,5 +144,24 @@ impl<'a> Ray<'a> {
         let along_x = |i: usize| between(x, m(i), m(i + 1));
         let along_y = |i: usize| between(y, along_x(i), along_x(i + 2));
         Some((between(z, along_y(0), along_y(4)), 0.0))
+    }
+}
+
+/// Where between two lengths the mask, at least one half at the first and at most at the second, is
+/// one half if it falls evenly.
+fn false_position(low: (f64, f64), high: (f64, f64)) -> f64 {
+    let (below, above) = (0.5 - high.1, low.1 - 0.5);
+    // Both are 0 where the mask is one half to the last bit.
+    low.0 + (high.0 - low.0) * above / (above + below).max(f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::false_position;
+
+    #[test]
+    fn a_mask_of_one_half_at_both_ends_has_a_crossing() {
+        assert_eq!(false_position((1.0, 1.0), (2.0, 0.0)), 1.5);
+        assert_eq!(false_position((1.0, 0.5), (2.0, 0.5)), 1.0);
     }
 }
