@@ -66,7 +66,7 @@ int ProcessExchange::ShareThreads(int wanted) const
     static_cast<long long>(std::hash<std::string>{}(machine.GetFullyQualifiedDomainName()));
   std::vector<long long> names(this->Target.processes);
   Controller()->AllGather(&own, names.data(), 1);
-  const auto here = std::count(names.begin(), names.end(), own);
+  const long here = std::max(1L, static_cast<long>(std::count(names.begin(), names.end(), own)));
   const long cores = vtkMultiThreader::GetGlobalDefaultNumberOfThreads();
   return wanted > 0 ? wanted : static_cast<int>(std::max(1L, cores / here));
 }

@@ -1,5 +1,6 @@
 #include "vtkMidSurfaceStatistics.h"
 
+#include "BlockRun.h"
 #include "FilterRun.h"
 #include "LabelTable.h"
 #include "Pieces.h"
@@ -120,14 +121,9 @@ void AddQuality(vtkTable* table, const std::vector<Row>& rows)
   AddNumbers(table, "ShareOver120", rows, [](const Row& row) { return row.share_over_120; });
   AddNumbers(table, "V567", rows, [](const Row& row) { return row.valence_567; });
 }
-/** The rows of the whole mesh, of which `input` may be the piece of this process. */
-std::vector<Row> MeasureAll(vtkInformation* output, vtkPolyData* input)
+/** The rows of the whole mesh, of which `input` may be the piece of this process: in the first. */
+std::vector<Row> MeasureAll(vtkPolyData* input)
 {
-  if (!Pieces::AreShared(output))
-  {
-    Pieces::CheckInput(output, input);
-    return midsurface::Measure(TriangleInput(input).Mesh());
-  }
   const ProcessExchange exchange;
   std::optional<TriangleInput> triangles;
   exchange.Guard([&] { triangles.emplace(input); });
@@ -136,7 +132,9 @@ std::vector<Row> MeasureAll(vtkInformation* output, vtkPolyData* input)
 } // namespace
 
 //------------------------------------------------------------------------------
-vtkMidSurfaceStatistics::vtkMidSurfaceStatistics() = default;
+vtkMidSurfaceStatistics::vtkMidSurfaceStatistics()
+  : Run(std::make_unique<BlockRun>(this))
+{}
 
 //------------------------------------------------------------------------------
 vtkMidSurfaceStatistics::~vtkMidSurfaceStatistics() = default;
@@ -162,8 +160,14 @@ int vtkMidSurfaceStatistics::RequestData(
   vtkTable* output = vtkTable::GetData(outputVector);
   vtkInformation* outputInformation = outputVector->GetInformationObject(0);
   const int result = FilterRun::Execute(this, 0, output, [=](FilterRun&) {
-    const std::vector<Row> rows = MeasureAll(outputInformation, input);
-    if (!Pieces::IsFirst(outputInformation))
+    const bool isShared = !this->Run->HasBlocks() && Pieces::AreShared(outputInformation);
+    if (!isShared && !this->Run->HasBlocks())
+    {
+      Pieces::CheckInput(outputInformation, input);
+    }
+    const std::vector<Row> rows =
+      isShared ? MeasureAll(input) : midsurface::Measure(TriangleInput(input).Mesh());
+    if (rows.empty())
     {
       return;
     }

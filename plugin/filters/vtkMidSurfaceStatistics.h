@@ -30,6 +30,10 @@
 #include "MidSurfaceFiltersModule.h"
 #include "vtkTableAlgorithm.h"
 
+#include <memory>
+
+class BlockRun;
+
 class MIDSURFACEFILTERS_EXPORT vtkMidSurfaceStatistics : public vtkTableAlgorithm
 {
 public:
@@ -48,6 +52,8 @@ protected:
 private:
   vtkMidSurfaceStatistics(const vtkMidSurfaceStatistics&) = delete;
   void operator=(const vtkMidSurfaceStatistics&) = delete;
+
+  std::unique_ptr<BlockRun> Run;
 };
 
 #endif

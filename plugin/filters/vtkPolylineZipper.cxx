@@ -1,5 +1,6 @@
 #include "vtkPolylineZipper.h"
 
+#include "BlockRun.h"
 #include "FilterRun.h"
 #include "Pieces.h"
 #include "PolyDataConversion.h"
@@ -12,7 +13,9 @@
 vtkStandardNewMacro(vtkPolylineZipper);
 
 //------------------------------------------------------------------------------
-vtkPolylineZipper::vtkPolylineZipper() = default;
+vtkPolylineZipper::vtkPolylineZipper()
+  : Run(std::make_unique<BlockRun>(this))
+{}
 
 //------------------------------------------------------------------------------
 vtkPolylineZipper::~vtkPolylineZipper() = default;
@@ -32,10 +35,13 @@ int vtkPolylineZipper::RequestData(
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   vtkInformation* outputInformation = outputVector->GetInformationObject(0);
   const int result = FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
-    Pieces::CheckInput(outputInformation, input);
-    if (!Pieces::IsFirst(outputInformation))
+    if (!this->Run->HasBlocks())
     {
-      return;
+      Pieces::CheckInput(outputInformation, input);
+      if (!Pieces::IsFirst(outputInformation))
+      {
+        return;
+      }
     }
     const PolylineInput lines(input);
     const midsurface::Polylines polylines = midsurface::MakePolylines(lines.Arrays());

@@ -14,6 +14,10 @@
 #include "MidSurfaceFiltersModule.h"
 #include "vtkPolyDataAlgorithm.h"
 
+#include <memory>
+
+class BlockRun;
+
 class MIDSURFACEFILTERS_EXPORT vtkPolylineZipper : public vtkPolyDataAlgorithm
 {
 public:
@@ -41,6 +45,8 @@ protected:
 private:
   vtkPolylineZipper(const vtkPolylineZipper&) = delete;
   void operator=(const vtkPolylineZipper&) = delete;
+
+  std::unique_ptr<BlockRun> Run;
 };
 
 #endif

@@ -1,5 +1,6 @@
 #include "vtkSegmentationFilter.h"
 
+#include "BlockRun.h"
 #include "FilterRun.h"
 #include "ImageSpacing.h"
 #include "LabelSelection.h"
@@ -7,8 +8,8 @@
 #include "ProcessExchange.h"
 #include "SegmentationVolume.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkCommand.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
@@ -93,7 +94,12 @@ void CutOut(vtkImageData* field, vtkImageData* piece)
 class vtkSegmentationFilter::vtkInternals
 {
 public:
+  explicit vtkInternals(vtkSegmentationFilter* self)
+    : Run(self)
+  {}
+
   LabelSelection Labels;
+  BlockRun Run;
 
   static ChosenArray Find(vtkSegmentationFilter* self, vtkImageData* image)
   {
@@ -126,18 +132,15 @@ public:
    */
   void FindLabels(vtkSegmentationFilter* self)
   {
-    if (this->RunDepth == 0)
-    {
-      this->Labels.Update([self](vtkImageData* image) { return Find(self, image); },
-        self->GetInputDataObject(0, 0), self->Threads);
-    }
+    this->Labels.Update([self](vtkImageData* image) { return Find(self, image); },
+      self->GetInputDataObject(0, 0), self->Threads);
   }
 
   /** All of the image of which `input` may be the piece of this process. */
   vtkSmartPointer<vtkImageData> FindWhole(vtkSegmentationFilter* self, vtkInformation* source,
     vtkImageData* input, vtkInformation* output)
   {
-    if (!input || this->HasBlocks || !Pieces::AreShared(output))
+    if (!input || this->Run.HasBlocks() || !Pieces::AreShared(output))
     {
       return input;
     }
@@ -155,16 +158,13 @@ public:
   /** Each process works on its own blocks, and one on the surface of an image that all share. */
   bool HasToWork(vtkInformation* output) const
   {
-    return this->HasBlocks || Pieces::IsFirst(output) || IsImage(output);
+    return this->Run.HasBlocks() || Pieces::IsFirst(output) || IsImage(output);
   }
-
-  int RunDepth = 0;
-  bool HasBlocks = false;
 };
 
 //------------------------------------------------------------------------------
 vtkSegmentationFilter::vtkSegmentationFilter()
-  : Internals(std::make_unique<vtkInternals>())
+  : Internals(std::make_unique<vtkInternals>(this))
 {
   this->SetNumberOfInputPorts(1);
   this->SetNumberOfOutputPorts(1);
@@ -173,7 +173,6 @@ vtkSegmentationFilter::vtkSegmentationFilter()
   this->GetLabels()->AddObserver(
     vtkCommand::ModifiedEvent, this, &vtkSegmentationFilter::LabelsChanged);
   this->AddObserver(vtkCommand::StartEvent, this, &vtkSegmentationFilter::RunStarts);
-  this->AddObserver(vtkCommand::EndEvent, this, &vtkSegmentationFilter::RunEnds);
 }
 
 //------------------------------------------------------------------------------
@@ -233,20 +232,10 @@ void vtkSegmentationFilter::LabelsChanged()
 //------------------------------------------------------------------------------
 void vtkSegmentationFilter::RunStarts()
 {
-  // A run on a collection holds one on each of its blocks.
-  if (this->Internals->RunDepth == 0)
+  if (this->Internals->Run.Depth() == 1)
   {
     this->Internals->FindLabels(this);
-    this->Internals->HasBlocks =
-      vtkCompositeDataSet::SafeDownCast(this->GetInputDataObject(0, 0)) != nullptr;
   }
-  ++this->Internals->RunDepth;
-}
-
-//------------------------------------------------------------------------------
-void vtkSegmentationFilter::RunEnds()
-{
-  --this->Internals->RunDepth;
 }
 
 //------------------------------------------------------------------------------
@@ -279,7 +268,10 @@ int vtkSegmentationFilter::FillInputPortInformation(int, vtkInformation* info)
 int vtkSegmentationFilter::RequestInformation(
   vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  this->Internals->FindLabels(this);
+  if (this->Internals->Run.Depth() == 0)
+  {
+    this->Internals->FindLabels(this);
+  }
   vtkInformation* input = inputVector[0]->GetInformationObject(0);
   if (input->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()) &&
     input->Has(vtkDataObject::SPACING()))
@@ -315,7 +307,7 @@ int vtkSegmentationFilter::RequestUpdateExtent(
 int vtkSegmentationFilter::RequestData(
   vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  const bool isShared = this->CanExtractPieces() && !this->Internals->HasBlocks &&
+  const bool isShared = this->CanExtractPieces() && !this->Internals->Run.HasBlocks() &&
     Pieces::AreShared(outputVector->GetInformationObject(0));
   return isShared ? this->RequestShare(inputVector, outputVector)
                   : this->RequestAll(inputVector, outputVector);
@@ -337,7 +329,7 @@ int vtkSegmentationFilter::RequestAll(
     }
     if (!input || input->GetNumberOfPoints() == 0)
     {
-      if (!this->Internals->HasBlocks && Pieces::IsFirst(outputInformation))
+      if (!this->Internals->Run.HasBlocks() && Pieces::IsFirst(outputInformation))
       {
         run.Warn(noVoxels);
       }
@@ -383,7 +375,8 @@ int vtkSegmentationFilter::RequestShare(
       {
         volume.emplace(input, chosen);
       }
-      this->Internals->Labels.ApplyToAll(run, chosen.Name);
+      const char* name = chosen.Array ? chosen.Array->GetName() : nullptr;
+      this->Internals->Labels.ApplyToAll(run, name ? name : chosen.Name);
     });
     const ImageSpacing spacing(whole->GetExtent(), whole->GetSpacing());
     const bool isStretched = this->Spacing == AUTOMATIC && spacing.IsStretched();
@@ -419,7 +412,7 @@ void vtkSegmentationFilter::FitToRequest(
     // time with the same message.
     output->CopyStructure(piece);
   }
-  else if (Pieces::AreShared(outputInformation) && !this->Internals->HasBlocks)
+  else if (Pieces::AreShared(outputInformation) && !this->Internals->Run.HasBlocks())
   {
     CutOut(output, piece);
   }

@@ -77,7 +77,8 @@ public:
 
   ///@{
   /**
-   * Number of threads; 0, the default: one a core. The output does not depend on it.
+   * Number of threads; 0, the default: one a core, shared among the processes on a machine. The
+   * output does not depend on it.
    */
   vtkSetClampMacro(Threads, int, 0, VTK_INT_MAX);
   vtkGetMacro(Threads, int);
@@ -153,7 +154,6 @@ private:
   void FitToRequest(vtkImageData* output, vtkImageData* piece, vtkInformation* outputInformation);
   void LabelsChanged();
   void RunStarts();
-  void RunEnds();
 
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

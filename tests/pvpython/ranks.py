@@ -106,6 +106,28 @@ def check_that_all_work(reader, processes):
     assert len(set(owners)) == min(processes, 3), set(owners)
 
 
+def check_unequal_blocks():
+    """A collection of three meshes, of which the processes hold unequal numbers: a table of each."""
+    source = simple.ProgrammableSource(
+        OutputDataSetType="vtkMultiblockDataSet",
+        Script="""
+from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+controller = vtkMultiProcessController.GetGlobalController()
+output.SetNumberOfBlocks(3)
+for index in range(3):
+    if index % controller.GetNumberOfProcesses() == controller.GetLocalProcessId():
+        sphere = vtkSphereSource()
+        sphere.Update()
+        output.SetBlock(index, sphere.GetOutput())
+""",
+    )
+    source.UpdatePipeline()
+    table = simple.MidSurfaceStatistics(Input=source)
+    table.UpdatePipeline()
+    assert table.GetDataInformation().GetNumberOfRows() == 3
+
+
 def check_that_nobody_waits(reader):
     """A run that fails in one process leaves the others as they should be."""
     proxy = simple.MidSurface(Input=reader, Labels=["9"])
@@ -158,6 +180,7 @@ def check(reader, on_cells, expected, processes):
             np.testing.assert_array_equal(found[name], expected[name], name)
     check_that_all_work(reader, processes)
     check_that_nobody_waits(reader)
+    check_unequal_blocks()
     check_a_source_that_gives_fixed_parts(processes)
     print(f"the same with {processes} processes")
 

@@ -111,9 +111,9 @@ pub unsafe extern "C" fn midsurface_abandon(
     unsafe {
         guarded(error, || {
             let mut team = read(exchange)?;
-            let message = text(message, "message")?;
-            midsurface::abandon(&mut team, &message);
-            Ok(())
+            let message = text(message, "message");
+            midsurface::abandon(&mut team, message.as_deref().unwrap_or_default());
+            message.map(drop)
         })
     }
 }

@@ -1,9 +1,10 @@
 //! What functions that hand over, read and free objects have in common.
 
-use midsurface::{Options, Volume};
+use midsurface::{abandon, Options, Volume};
 
 use crate::arguments::{free, object, Output};
 use crate::error::{guarded, guarded_value, midsurface_error, midsurface_status};
+use crate::exchange::{self, midsurface_exchange, Team};
 use crate::options::{self, midsurface_options, Callbacks};
 use crate::volume::{self, midsurface_volume};
 
@@ -21,6 +22,29 @@ pub(crate) unsafe fn make<T>(
         guarded(error, || {
             let out = Output::handle(out)?;
             out.set_object(work()?);
+            Ok(())
+        })
+    }
+}
+
+/// The body of a function that makes an object together with other processes: these are told where
+/// there is no place for it.
+///
+/// # Safety
+/// The pointers are null or as the header describes.
+pub(crate) unsafe fn make_in_team<T>(
+    exchange: *const midsurface_exchange,
+    out: *mut *mut T,
+    error: *mut *mut midsurface_error,
+    work: impl FnOnce(&mut Team) -> Result<T, midsurface_error>,
+) -> midsurface_status {
+    // SAFETY: the same contract.
+    unsafe {
+        guarded(error, || {
+            let out = Output::handle(out);
+            let mut team = exchange::read(exchange)?;
+            let out = out.inspect_err(|error| abandon(&mut team, &error.text()))?;
+            out.set_object(work(&mut team)?);
             Ok(())
         })
     }

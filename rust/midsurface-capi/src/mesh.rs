@@ -4,8 +4,8 @@ use midsurface::Mesh;
 
 use crate::arguments::{address, collected, object};
 use crate::error::{guarded, midsurface_error, midsurface_status};
-use crate::exchange::{self, midsurface_exchange};
-use crate::handles::{make, make_of_volume, release, show};
+use crate::exchange::midsurface_exchange;
+use crate::handles::{make_in_team, make_of_volume, release, show};
 use crate::options::{self, midsurface_options};
 use crate::piece::{self, midsurface_piece};
 use crate::volume::midsurface_volume;
@@ -130,19 +130,14 @@ pub unsafe extern "C" fn midsurface_extract_piece(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        make(out, error, || {
-            let mut team = exchange::read(exchange)?;
+        make_in_team(exchange, out, error, |team| {
             let arguments = piece::read(piece)
                 .and_then(|(piece, whole)| Ok((piece, whole, options::read(options)?)));
             let (piece, whole, (options, mut callbacks)) =
-                arguments.inspect_err(|error| midsurface::abandon(&mut team, &error.text()))?;
-            midsurface_mesh::new(midsurface::extract_piece(
-                piece.as_ref(),
-                &whole,
-                &options,
-                &mut team,
-                &mut callbacks,
-            )?)
+                arguments.inspect_err(|error| midsurface::abandon(team, &error.text()))?;
+            let piece = piece.as_ref();
+            let mesh = midsurface::extract_piece(piece, &whole, &options, team, &mut callbacks)?;
+            midsurface_mesh::new(mesh)
         })
     }
 }

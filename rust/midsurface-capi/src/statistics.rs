@@ -4,8 +4,8 @@ use midsurface::{Scope, Statistics, TriangleMesh};
 
 use crate::arguments::{address, collected, optional_slice, slice, value};
 use crate::error::{midsurface_error, midsurface_status};
-use crate::exchange::{self, midsurface_exchange};
-use crate::handles::{look, make, release};
+use crate::exchange::midsurface_exchange;
+use crate::handles::{look, make, make_in_team, release};
 
 /// A triangle mesh of any origin. Borrowed for a call, never copied.
 #[repr(C)]
@@ -156,11 +156,9 @@ pub unsafe extern "C" fn midsurface_measure_pieces(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        make(out, error, || {
-            let mut team = exchange::read(exchange)?;
-            let mesh =
-                read(mesh).inspect_err(|error| midsurface::abandon(&mut team, &error.text()))?;
-            table(midsurface::statistics_of_pieces(&mesh, &mut team)?)
+        make_in_team(exchange, out, error, |team| {
+            let mesh = read(mesh).inspect_err(|error| midsurface::abandon(team, &error.text()))?;
+            table(midsurface::statistics_of_pieces(&mesh, team)?)
         })
     }
 }

@@ -181,14 +181,14 @@ impl<'a> Team<'a> {
             self.check(is_there)?;
             done += size;
         }
-        Ok(message.and_then(|message| match kind {
-            MESSAGE => Ok(message),
+        Ok(match kind {
+            MESSAGE => message,
             CANCELLED => Err(Error::Cancelled),
             _ => Err(Error::Elsewhere {
                 process: from,
-                message: text(&message),
+                message: text(&message.unwrap_or_default()),
             }),
-        }))
+        })
     }
 
     fn check(&mut self, is_there: bool) -> Result<()> {

@@ -45,7 +45,8 @@ pub(crate) fn gather_parts(
             .map_err(|error| territory.place(error))?,
         None => Scan::default(),
     };
-    agree_on_labels(&scan, &wanted, voxels, team, execution)?;
+    let held = piece.map_or(Ok(0), |volume| volume.grid.voxel_count())?;
+    agree_on_labels(&scan, &wanted, held, team, execution)?;
     territory.clip(&mut scan.runs)?;
     let mut runs = scan.runs;
     // A stable sort: within a label the order z, y, x stays.
@@ -66,20 +67,23 @@ pub(crate) fn gather_parts(
 fn agree_on_labels(
     scan: &Scan,
     wanted: &Wanted,
-    voxels: usize,
+    held: usize,
     team: &mut Team,
     execution: &mut Execution,
 ) -> Result<()> {
-    let mut message = vec![scan.run_count as i64];
+    let mut message = vec![scan.run_count as i64, held as i64];
     message.extend(&scan.labels);
     let of_all = team.gather(message)?;
     if !team.is_first() {
         return Ok(());
     }
     let mut whole = Scan::default();
+    let mut voxels = 0;
     for message in &of_all {
-        if let Some((&count, labels)) = message.split_first() {
-            whole.run_count += count as usize;
+        if let Some((&[runs, held], labels)) = message.split_first_chunk::<2>() {
+            // Where pieces overlap, runs and voxels both count as often.
+            whole.run_count += runs as usize;
+            voxels += held as usize;
             whole.labels.extend(labels);
         }
     }
@@ -204,7 +208,8 @@ fn decide(
     let mut starts = vec![0];
     for message in of_all {
         let (count, rest) = message.split_first().ok_or(Error::Pieces)?;
-        let (described, runs) = rest.split_at(COMPONENT_LENGTH * *count as usize);
+        let described = COMPONENT_LENGTH * *count as usize;
+        let (described, runs) = rest.split_at_checked(described).ok_or(Error::Pieces)?;
         let first = components.len() as i64;
         for c in described.chunks_exact(COMPONENT_LENGTH) {
             let component = Component {

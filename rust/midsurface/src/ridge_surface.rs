@@ -114,7 +114,8 @@ pub(crate) fn ridge_surface(
     let fans = Fans::new(&found.triangles, found.points.len());
     let passband = PASSBAND / h.iter().copied().fold(1.0, f64::max);
     flatten(&mut found, &fans, (wanted, passband), execution)?;
-    let fans = remove_self_intersections(&mut found, fans, execution)?;
+    let component = |part: u32| parts[part as usize].component;
+    let fans = remove_self_intersections(&mut found, fans, &component, wanted, execution)?;
     keep_within(grid, &mut found.points);
     let fans = if drop_degenerate(&mut found, in_mesh(grid), execution)? {
         found = found.compact()?;
@@ -218,7 +219,7 @@ fn cut_surface(
     drop(sheets);
     let at_points = values(batch, &surface, &fraction, h, execution)?;
     trim(&mut surface, &at_points, execution)?;
-    drop_scraps(&mut surface);
+    drop_scraps(&mut surface, |_| true);
     weld(&mut surface, execution)?;
     execution.pass_done()?;
     Ok((surface.compact()?, fraction))

@@ -10,8 +10,9 @@ use crate::manifold::Surface;
 /// Smaller pieces of surface are scraps, square work units.
 const SCRAP: f64 = 15.0;
 
-/// Drops the scraps of a surface, whose points have their parts as sources.
-pub(crate) fn drop_scraps(surface: &mut Surface) {
+/// Drops the scraps of a surface, whose points have their parts as sources, from the parts that
+/// `has_scraps` names.
+pub(crate) fn drop_scraps(surface: &mut Surface, has_scraps: impl Fn(usize) -> bool) {
     let mut pieces = DisjointSets::new(surface.points.len());
     for t in &surface.triangles {
         pieces.join(t[0] as usize, t[1] as usize);
@@ -32,7 +33,7 @@ pub(crate) fn drop_scraps(surface: &mut Surface) {
     let mut triangles = std::mem::take(&mut surface.triangles);
     triangles.retain(|t| {
         let own = area[pieces.find(t[0] as usize)];
-        own >= SCRAP || own >= largest[part_of(t[0])]
+        own >= SCRAP || own >= largest[part_of(t[0])] || !has_scraps(part_of(t[0]))
     });
     surface.triangles = triangles;
 }

@@ -23,6 +23,8 @@ const STEP: f64 = 0.12;
 const STEPS: usize = 6;
 /// Times that triangles are cut away, at most.
 const CUTS: usize = 8;
+/// How far from a rim that is drawn back others may begin to touch, in lengths of an edge.
+const REACH: f64 = 1.5;
 /// Side of a cell, in mean sizes of a triangle; larger where the grid would have more than so many
 /// cells a triangle.
 const SIDE: f64 = 1.5;
@@ -32,25 +34,29 @@ const PIECE: usize = 4096;
 /// Passes over the triangles that [`remove_self_intersections`] makes where nothing touches, for its progress.
 pub(crate) const PASSES: usize = 2;
 
-/// Draws rims back, and cuts away what has to be, until no two triangles touch beyond what they
-/// share. Takes and returns the surface's fans.
+/// Draws rims back, and cuts away what has to be, until no rim touches another triangle of its
+/// component, as far as [`CUTS`] rounds reach. `component` is that of a source of the surface's
+/// points, `edge` the length of its edges. Takes and returns the surface's fans.
 pub(crate) fn remove_self_intersections(
     surface: &mut Surface,
     mut fans: Fans,
+    component: &(impl Fn(u32) -> u32 + Sync),
+    edge: f64,
     execution: &mut Execution,
 ) -> Result<Fans> {
     for cut in 1..=CUTS {
         let on_rim = on_rim(surface, &fans, execution)?;
         let mut all: Vec<u32> = reserved(surface.triangles.len())?;
         all.extend(0..surface.triangles.len() as u32);
-        let touching = touching(surface, &on_rim, &all, execution)?;
+        let touching = touching(surface, &on_rim, &all, component, execution)?;
         if touching.is_empty() {
             break;
         }
-        let near = near(surface, &touching)?;
-        let left = draw_back(surface, (&fans, &on_rim), &near, touching, execution)?;
+        let near = near(surface, &touching, REACH * edge)?;
+        let rims = (&fans, on_rim.as_slice());
+        let left = draw_back(surface, rims, &near, touching, component, execution)?;
         if left.is_empty() {
-            break;
+            continue;
         }
         let all = cut == CUTS;
         cut_away(surface, (&fans, &on_rim), &left, all, execution)?;
@@ -81,6 +87,7 @@ fn touching(
     surface: &Surface,
     on_rim: &[bool],
     among: &[u32],
+    component: &(impl Fn(u32) -> u32 + Sync),
     execution: &mut Execution,
 ) -> Result<Vec<[u32; 2]>> {
     let is_at_rim = |t: u32| {
@@ -93,7 +100,7 @@ fn touching(
     if at_rim.is_empty() {
         return Ok(Vec::new());
     }
-    let cells = Cells::around(surface, &at_rim);
+    let cells = Cells::around(surface, &at_rim, 0.0);
     let entries = || {
         let of = |&t: &u32| {
             cells
@@ -106,8 +113,14 @@ fn touching(
     let touches = |t: u32, rim: u32| {
         let (own, other) = (bounds(surface, t), bounds(surface, rim));
         let [a, b] = [t, rim].map(|t| surface.triangles[t as usize]);
+        let is_same = |p: u32, q: u32| {
+            component(surface.source[p as usize]) == component(surface.source[q as usize])
+        };
         // Two at rims meet twice.
-        (t < rim || !is_at_rim(t)) && overlap(own, other) && touch(a, b, &surface.points)
+        (t < rim || !is_at_rim(t))
+            && overlap(own, other)
+            && is_same(a[0], b[0])
+            && touch(a, b, &surface.points)
     };
     let pieces: Vec<&[u32]> = among.chunks(PIECE).collect();
     let mut pairs = Vec::new();
@@ -128,26 +141,35 @@ fn touching(
             Ok(())
         },
     )?;
+    // Two triangles may meet in several cells.
+    pairs.sort_unstable();
+    pairs.dedup();
     Ok(pairs)
 }
 
-/// The triangles around pairs that touch, as far as drawing those back can make others touch.
-fn near(surface: &Surface, touching: &[[u32; 2]]) -> Result<Vec<u32>> {
-    let cells = Cells::around(surface, touching.as_flattened());
-    let mut is_near: Vec<bool> = zeros(cells.count())?;
-    for &t in touching.as_flattened() {
+/// The triangles within `reach` of pairs that touch, as far as drawing those back can make others
+/// touch.
+fn near(surface: &Surface, touching: &[[u32; 2]], reach: f64) -> Result<Vec<u32>> {
+    let touching = touching.as_flattened();
+    let cells = Cells::around(surface, touching, reach);
+    let wider = |t: u32| {
         let [low, high] = bounds(surface, t);
-        let wider = [low.map(|v| v - cells.side), high.map(|v| v + cells.side)];
-        cells
-            .reached_by(wider)
-            .for_each(|cell| is_near[cell as usize] = true);
-    }
-    let all = 0..surface.triangles.len() as u32;
-    let reaches = |t: &u32| {
-        let mut own = cells.reached_by(bounds(surface, *t));
-        own.any(|cell| is_near[cell as usize])
+        [low.map(|v| v - reach), high.map(|v| v + reach)]
     };
-    Ok(all.filter(reaches).collect())
+    let entries = || {
+        let of = |&t: &u32| cells.reached_by(wider(t)).map(move |cell| (cell, t));
+        touching.iter().flat_map(of)
+    };
+    let in_cell = Buckets::new(cells.count(), entries);
+    let is_near = |&t: &u32| {
+        let own = bounds(surface, t);
+        let mut around = cells
+            .reached_by(own)
+            .flat_map(|cell| in_cell.of(cell as usize));
+        around.any(|&other| overlap(own, wider(other)))
+    };
+    let all = 0..surface.triangles.len() as u32;
+    Ok(all.filter(is_near).collect())
 }
 
 /// Draws the rims of pairs that touch back; returns the pairs that touch in the end.
@@ -156,6 +178,7 @@ fn draw_back(
     (fans, on_rim): (&Fans, &[bool]),
     near: &[u32],
     mut touching: Vec<[u32; 2]>,
+    component: &(impl Fn(u32) -> u32 + Sync),
     execution: &mut Execution,
 ) -> Result<Vec<[u32; 2]>> {
     for _ in 0..STEPS {
@@ -180,7 +203,7 @@ fn draw_back(
                 *point = along(*point, STEP / count, way);
             }
         }
-        touching = self::touching(surface, on_rim, near, execution)?;
+        touching = self::touching(surface, on_rim, near, component, execution)?;
         if touching.is_empty() {
             break;
         }
@@ -215,10 +238,15 @@ fn cut_away(
             goes[cut as usize] = true;
         }
     }
+    let sources = surface.source.iter().max().map_or(0, |s| *s as usize + 1);
+    let mut is_cut: Vec<bool> = zeros(sources)?;
+    for (triangle, _) in triangles.iter().zip(&goes).filter(|(_, goes)| **goes) {
+        is_cut[surface.source[triangle[0] as usize] as usize] = true;
+    }
     let mut goes = goes.into_iter();
     surface.triangles.retain(|_| goes.next() == Some(false));
     make_manifold(surface, execution)?;
-    drop_scraps(surface);
+    drop_scraps(surface, |part| is_cut[part]);
     *surface = std::mem::take(surface).compact()?;
     Ok(())
 }
@@ -244,7 +272,8 @@ struct Cells {
 }
 
 impl Cells {
-    fn around(surface: &Surface, triangles: &[u32]) -> Self {
+    /// A grid that reaches `margin` beyond the triangles.
+    fn around(surface: &Surface, triangles: &[u32], margin: f64) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         let mut size = 0.0;
         for &t in triangles {
@@ -253,7 +282,8 @@ impl Cells {
             high = std::array::from_fn(|k| high[k].max(to[k]));
             size += (0..3).map(|k| to[k] - from[k]).fold(0.0, f64::max);
         }
-        let extent = sub(high, low);
+        let low = low.map(|v| v - margin);
+        let extent = sub(high.map(|v| v + margin), low);
         let most = CELLS * surface.triangles.len();
         let least = (extent.iter().product::<f64>() / most as f64).cbrt();
         let side = least.max(SIDE * size / triangles.len() as f64);
@@ -326,7 +356,8 @@ mod tests {
         let mut quiet = Quiet::default();
         let fans = Fans::new(&surface.triangles, surface.points.len());
         let mut execution = Execution::new(threads, &mut quiet).unwrap();
-        remove_self_intersections(&mut surface, fans, &mut execution).unwrap();
+        remove_self_intersections(&mut surface, fans, &|source| source, 1.0, &mut execution)
+            .unwrap();
         surface
     }
 
@@ -335,6 +366,25 @@ mod tests {
         let t = &surface.triangles;
         let touching = |a: usize| (0..a).filter(move |&b| touch(t[a], t[b], &surface.points));
         (0..t.len()).flat_map(touching).count()
+    }
+
+    #[test]
+    fn what_becomes_of_a_component_does_not_depend_on_others() {
+        let alone = uncrossed(sheets_at(-0.9), 2);
+        let mut both = sheets_at(-0.3);
+        let first = both.points.len() as u32;
+        let other = sheets_at(-0.9);
+        let shifted = other.triangles.iter().map(|t| t.map(|p| p + first));
+        both.triangles.extend(shifted);
+        both.points.extend(&other.points);
+        both.source.resize(both.points.len(), 1);
+        let both = uncrossed(both, 2);
+        let second = |t: &&[u32; 3]| both.source[t[0] as usize] == 1;
+        let corners = |surface: &Surface, t: &[u32; 3]| t.map(|p| surface.points[p as usize]);
+        let expected: Vec<_> = alone.triangles.iter().map(|t| corners(&alone, t)).collect();
+        let found = both.triangles.iter().filter(second);
+        let found: Vec<_> = found.map(|t| corners(&both, t)).collect();
+        assert_eq!(found, expected);
     }
 
     #[test]
