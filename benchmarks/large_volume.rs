@@ -5,8 +5,9 @@
 //!
 //! The volumes are full of vesicles, sheets and tubes, each a component of its own; the method is
 //! the ridge surface with two threads. Needs Linux and 8 GB. Seconds are both those of the clock and
-//! those of the processors, since only the latter mean something on a busy machine. Fails where memory, or the rise of the time for a voxel from
-//! one size to the next, is beyond what the project promises.
+//! those of the processors, since only the latter mean something on a busy machine. Fails where
+//! memory, or the rise of the time for a voxel from one size to the next, is beyond what the project
+//! promises.
 
 use std::time::Instant;
 

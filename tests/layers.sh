@@ -22,7 +22,7 @@ forbid() {
 }
 
 core=rust/midsurface/src
-forbid '[Vv][Tt][Kk]|[Pp]ara[Vv]iew' 'the core names its host' $core
+forbid '[Vv][Tt][Kk]|[Pp]ara[Vv]iew' 'the core names its host' rust/midsurface
 forbid '(^|[^_a-z])unsafe([^_a-z]|$)|extern "C"|no_mangle' \
   'the core has a foreign interface or unsafe code' $core
 forbid 'std::(fs|net)|(^|[^a-z])e?print(ln)?!' 'the core reads, writes or prints' $core

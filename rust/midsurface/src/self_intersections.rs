@@ -31,7 +31,8 @@ const SIDE: f64 = 1.5;
 const CELLS: usize = 4;
 /// Triangles handed to a worker at a time.
 const PIECE: usize = 4096;
-/// Passes over the triangles that [`remove_self_intersections`] makes where nothing touches, for its progress.
+/// Passes over the triangles that [`remove_self_intersections`] makes where nothing touches, for its
+/// progress.
 pub(crate) const PASSES: usize = 2;
 
 /// Draws rims back, and cuts away what has to be, until no rim touches another triangle of its

@@ -107,7 +107,7 @@ fn never(_: usize) -> usize {
     usize::MAX
 }
 
-/// Blocks as ParaView cuts them: of points, so that neighbours share those between them.
+/// Blocks of points of which neighbours share so many layers.
 fn blocks(dimensions: [usize; 3], counts: [usize; 3], shared: usize) -> Vec<Extent> {
     let cut = |axis: usize, i: usize| (dimensions[axis] - 1) * i / counts[axis];
     let mut blocks = Vec::new();
