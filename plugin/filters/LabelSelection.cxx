@@ -88,7 +88,7 @@ void LabelSelection::Update(const ArrayFinder& find, vtkDataObject* input, int t
     std::vector<ScannedArray> arrays = this->Scan(find, input, threads);
     for (const ScannedArray& scanned : arrays)
     {
-      table.Add(scanned.Labels);
+      scanned.Readable ? table.Add(scanned.Labels) : table.AddUnreadable();
     }
     this->Scanned = arrays.empty() ? std::move(this->Scanned) : std::move(arrays);
     ReadNames(table, input);
@@ -239,12 +239,34 @@ void LabelSelection::Apply(FilterRun& run, const SegmentationVolume& volume) con
   {
     return;
   }
+  this->Choose(run, array->GetName() ? array->GetName() : "", scanned->Labels);
+}
+
+//------------------------------------------------------------------------------
+void LabelSelection::ApplyToAll(FilterRun& run, const std::string& arrayName) const
+{
+  if (this->Table.IsIncomplete())
+  {
+    return;
+  }
+  std::vector<int64_t> labels;
+  for (const auto& entry : this->Table.Entries())
+  {
+    labels.push_back(entry.first);
+  }
+  this->Choose(run, arrayName, labels);
+}
+
+//------------------------------------------------------------------------------
+void LabelSelection::Choose(
+  FilterRun& run, const std::string& arrayName, const std::vector<int64_t>& present) const
+{
   if (this->Request == Meaning::Listed)
   {
-    this->CheckPresence(array->GetName() ? array->GetName() : "");
+    this->CheckPresence(arrayName);
   }
   std::vector<int64_t> wanted;
-  std::copy_if(scanned->Labels.begin(), scanned->Labels.end(), std::back_inserter(wanted),
+  std::copy_if(present.begin(), present.end(), std::back_inserter(wanted),
     [this](int64_t label) { return this->IsTicked(label); });
   if (wanted.empty() && this->Found->GetNumberOfArraysEnabled() > 0)
   {
@@ -255,26 +277,4 @@ void LabelSelection::Apply(FilterRun& run, const SegmentationVolume& volume) con
   {
     run.Options.Labels = std::move(wanted);
   }
-}
-
-//------------------------------------------------------------------------------
-void LabelSelection::ApplyToAll(FilterRun& run, const std::string& arrayName) const
-{
-  if (this->Request == Meaning::All)
-  {
-    return;
-  }
-  if (this->Request == Meaning::Listed)
-  {
-    this->CheckPresence(arrayName);
-  }
-  std::vector<int64_t> wanted;
-  for (const auto& entry : this->Table.Entries())
-  {
-    if (this->IsTicked(entry.first))
-    {
-      wanted.push_back(entry.first);
-    }
-  }
-  run.Options.Labels = std::move(wanted);
 }

@@ -73,6 +73,8 @@ private:
   std::vector<ScannedArray> Scan(const ArrayFinder& find, vtkDataObject* input, int threads) const;
   void RefreshTicks();
   bool IsTicked(int64_t label) const;
+  void Choose(
+    FilterRun& run, const std::string& arrayName, const std::vector<int64_t>& present) const;
   void CheckPresence(const std::string& arrayName) const;
 
   Meaning Request = Meaning::All;

@@ -14,6 +14,8 @@
 namespace
 {
 constexpr const char* separator = ": ";
+/** A line of a message between processes that tells of an array without labels. */
+constexpr const char* unreadable = "?";
 
 /** The label that a numeric array names at `index`; false where it is none. */
 bool ReadLabel(vtkDataArray* values, vtkIdType index, int64_t& label)
@@ -113,6 +115,7 @@ std::string LabelTable::Pack() const
 {
   // A line a label; an empty line where labels were looked for, so that nothing is a message too.
   std::string lines = this->Known ? "\n" : " \n";
+  lines += this->Incomplete ? unreadable + std::string("\n") : "";
   for (const auto& entry : this->Names)
   {
     lines += LabelTable::Text(entry) + "\n";
@@ -130,6 +133,7 @@ void LabelTable::Unpack(const char* begin, const char* end)
     line = lineEnd == end ? end : lineEnd + 1;
     int64_t label = 0;
     this->Known = this->Known || text != " ";
+    this->Incomplete = this->Incomplete || text == unreadable;
     if (ReadNumber(text, label))
     {
       std::string& name = this->Names[label];

@@ -31,6 +31,13 @@ public:
     this->Known = true;
   }
 
+  /** An array was looked at that holds no labels. */
+  void AddUnreadable()
+  {
+    this->Known = true;
+    this->Incomplete = true;
+  }
+
   /** Names the labels that have no name yet. */
   void ReadNames(vtkFieldData* fields);
 
@@ -42,6 +49,8 @@ public:
 
   /** Whether labels were looked for at all. */
   bool IsKnown() const { return this->Known; }
+  /** Whether an array could not be read, so that there may be more labels. */
+  bool IsIncomplete() const { return this->Incomplete; }
   bool Holds(int64_t label) const { return this->Names.count(label) > 0; }
   const std::map<int64_t, std::string>& Entries() const { return this->Names; }
 
@@ -56,6 +65,7 @@ private:
   void Unpack(const char* begin, const char* end);
 
   bool Known = false;
+  bool Incomplete = false;
   /** By label; "" where a label has no name. */
   std::map<int64_t, std::string> Names;
 };

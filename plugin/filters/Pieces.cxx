@@ -1,5 +1,6 @@
 #include "Pieces.h"
 
+#include "BlockRun.h"
 #include "SegmentationVolume.h"
 
 #include "vtkDataArray.h"
@@ -210,8 +211,12 @@ int Pieces::Result(vtkInformation* output, int result)
 }
 
 //------------------------------------------------------------------------------
-void Pieces::CheckInput(vtkInformation* output, vtkDataSet* input)
+bool Pieces::HasToWork(const BlockRun& run, vtkInformation* output, vtkDataSet* input)
 {
+  if (run.HasBlocks())
+  {
+    return true;
+  }
   const int own = !Pieces::IsFirst(output) && input && input->GetNumberOfCells() > 0 ? 1 : 0;
   int any = own;
   if (Pieces::AreShared(output))
@@ -224,6 +229,7 @@ void Pieces::CheckInput(vtkInformation* output, vtkDataSet* input)
       "The input is spread over several processes, but this filter needs all "
       "of it in the first: save it to one file and open that.");
   }
+  return Pieces::IsFirst(output);
 }
 
 //------------------------------------------------------------------------------

@@ -6,6 +6,7 @@
 class vtkDataSet;
 class vtkImageData;
 class vtkInformation;
+class BlockRun;
 struct ChosenArray;
 
 /**
@@ -29,8 +30,12 @@ bool IsFirst(vtkInformation* output);
  */
 int Result(vtkInformation* output, int result);
 
-/** @throws std::runtime_error in all processes where another than the first has cells. */
-void CheckInput(vtkInformation* output, vtkDataSet* input);
+/**
+ * Whether this process works on `input` by itself: on a block of its own, or as the first on all.
+ * @throws std::runtime_error in all processes where another than the first has cells, unless `run`
+ * is one on blocks.
+ */
+bool HasToWork(const BlockRun& run, vtkInformation* output, vtkDataSet* input);
 
 /**
  * The image that the pieces of the array `chosen` make up, without any array; null where all pieces

@@ -12,6 +12,10 @@
 #include <string>
 #include <vector>
 
+#ifdef __linux__
+#include <sched.h>
+#endif
+
 namespace
 {
 /** Tells the messages of this class from others between the same processes. */
@@ -32,6 +36,18 @@ bool Receive(void*, size_t from, int64_t* numbers, size_t length)
 {
   return Controller()->Receive(
            numbers, static_cast<vtkIdType>(length), static_cast<int>(from), tag) != 0;
+}
+
+/** Whether this process is bound to some of the machine's cores, as mpiexec may do. */
+bool HasCoresOfItsOwn(long cores)
+{
+#ifdef __linux__
+  cpu_set_t own;
+  return sched_getaffinity(0, sizeof own, &own) == 0 && CPU_COUNT(&own) < cores;
+#else
+  static_cast<void>(cores);
+  return false;
+#endif
 }
 } // namespace
 
@@ -62,11 +78,15 @@ void ProcessExchange::Guard(const std::function<void()>& preparation) const
 int ProcessExchange::ShareThreads(int wanted) const
 {
   vtksys::SystemInformation machine;
-  const long long own =
-    static_cast<long long>(std::hash<std::string>{}(machine.GetFullyQualifiedDomainName()));
+  const char* name = machine.GetHostname();
+  const auto own = static_cast<long long>(std::hash<std::string>{}(name ? name : ""));
   std::vector<long long> names(this->Target.processes);
   Controller()->AllGather(&own, names.data(), 1);
   const long here = std::max(1L, static_cast<long>(std::count(names.begin(), names.end(), own)));
   const long cores = vtkMultiThreader::GetGlobalDefaultNumberOfThreads();
-  return wanted > 0 ? wanted : static_cast<int>(std::max(1L, cores / here));
+  if (wanted > 0 || HasCoresOfItsOwn(cores))
+  {
+    return wanted;
+  }
+  return static_cast<int>(std::max(1L, cores / here));
 }

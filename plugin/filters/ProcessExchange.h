@@ -27,7 +27,8 @@ public:
 
   /**
    * The number of threads where `wanted` are asked for: for 0, this machine's cores, shared among
-   * the processes on it. All processes have to call this at once.
+   * the processes on it, or 0 where this one is bound to cores of its own. All processes have to
+   * call this at once.
    */
   int ShareThreads(int wanted) const;
 

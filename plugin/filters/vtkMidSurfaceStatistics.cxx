@@ -121,9 +121,14 @@ void AddQuality(vtkTable* table, const std::vector<Row>& rows)
   AddNumbers(table, "ShareOver120", rows, [](const Row& row) { return row.share_over_120; });
   AddNumbers(table, "V567", rows, [](const Row& row) { return row.valence_567; });
 }
-/** The rows of the whole mesh, of which `input` may be the piece of this process: in the first. */
-std::vector<Row> MeasureAll(vtkPolyData* input)
+/** The rows of a mesh, of which `input` may be a piece; none where another process has them. */
+std::vector<Row> MeasureAll(const BlockRun& run, vtkInformation* output, vtkPolyData* input)
 {
+  if (run.HasBlocks() || !Pieces::AreShared(output))
+  {
+    return Pieces::HasToWork(run, output, input) ? midsurface::Measure(TriangleInput(input).Mesh())
+                                                 : std::vector<Row>();
+  }
   const ProcessExchange exchange;
   std::optional<TriangleInput> triangles;
   exchange.Guard([&] { triangles.emplace(input); });
@@ -160,13 +165,7 @@ int vtkMidSurfaceStatistics::RequestData(
   vtkTable* output = vtkTable::GetData(outputVector);
   vtkInformation* outputInformation = outputVector->GetInformationObject(0);
   const int result = FilterRun::Execute(this, 0, output, [=](FilterRun&) {
-    const bool isShared = !this->Run->HasBlocks() && Pieces::AreShared(outputInformation);
-    if (!isShared && !this->Run->HasBlocks())
-    {
-      Pieces::CheckInput(outputInformation, input);
-    }
-    const std::vector<Row> rows =
-      isShared ? MeasureAll(input) : midsurface::Measure(TriangleInput(input).Mesh());
+    const std::vector<Row> rows = MeasureAll(*this->Run, outputInformation, input);
     if (rows.empty())
     {
       return;

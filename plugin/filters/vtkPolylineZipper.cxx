@@ -35,13 +35,9 @@ int vtkPolylineZipper::RequestData(
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   vtkInformation* outputInformation = outputVector->GetInformationObject(0);
   const int result = FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
-    if (!this->Run->HasBlocks())
+    if (!Pieces::HasToWork(*this->Run, outputInformation, input))
     {
-      Pieces::CheckInput(outputInformation, input);
-      if (!Pieces::IsFirst(outputInformation))
-      {
-        return;
-      }
+      return;
     }
     const PolylineInput lines(input);
     const midsurface::Polylines polylines = midsurface::MakePolylines(lines.Arrays());

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 from paraview import servermanager, simple
 
-from pipeline import arrays, image
+from pipeline import arrays, image, update
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
@@ -140,6 +140,15 @@ def check_that_nobody_waits(reader):
     assert proxy.GetDataInformation().GetNumberOfCells() > 0
 
 
+def check_that_an_unreadable_array_is_explained(reader):
+    """A label is asked for of an array that holds none: the message tells what the array holds."""
+    calculator = simple.Calculator(Input=reader, Function="0.37*labels", ResultArrayName="map")
+    proxy = simple.MidSurface(Input=calculator, Segmentation=["POINTS", "map"], Labels=["1"])
+    if proxy.GetClientSideObject():
+        _, messages = update(proxy)
+        assert "whole numbers" in messages.errors[0], messages.errors
+
+
 def check_a_source_that_gives_fixed_parts(processes):
     """Each process says that its part is the whole: no surface, rather than one with seams."""
     source = simple.ProgrammableSource(
@@ -184,6 +193,7 @@ def check(reader, on_cells, expected, processes):
     check_that_all_work(reader, processes)
     check_that_nobody_waits(reader)
     check_unequal_blocks()
+    check_that_an_unreadable_array_is_explained(reader)
     check_a_source_that_gives_fixed_parts(processes)
     print(f"the same with {processes} processes")
 

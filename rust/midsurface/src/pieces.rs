@@ -40,15 +40,14 @@ pub(crate) fn gather_parts(
     let voxels = whole.voxel_count()?;
     let territory = Territory::agree(piece, whole, team)?;
     let wanted = Wanted::new(options);
-    let mut scan = match piece {
+    let scan = match piece {
         Some(volume) => runs::scan(volume, voxels, execution, |label| wanted.holds(label))
             .map_err(|error| territory.place(error))?,
         None => Scan::default(),
     };
     let held = piece.map_or(Ok(0), |volume| volume.grid.voxel_count())?;
     agree_on_labels(&scan, &wanted, held, team, execution)?;
-    territory.clip(&mut scan.runs)?;
-    let mut runs = scan.runs;
+    let mut runs = territory.clip(scan.runs)?;
     // A stable sort: within a label the order z, y, x stays.
     runs.sort_by_key(|run| run.label);
     let found = LocalComponents::find(&runs)?;

@@ -12,7 +12,7 @@ use crate::buckets::Buckets;
 use crate::error::{reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, floor, sub, Vec3};
-use crate::halfedge::{ends, Fans, NONE};
+use crate::halfedge::{Fans, NONE};
 use crate::manifold::{make_manifold, Surface};
 use crate::scraps::drop_scraps;
 use crate::touching::{touch, TOUCHING};
@@ -29,7 +29,7 @@ const REACH: f64 = 1.5;
 /// cells a triangle.
 const SIDE: f64 = 1.5;
 const CELLS: usize = 4;
-/// Triangles handed to a worker at a time.
+/// Triangles or points handed to a worker at a time.
 const PIECE: usize = 4096;
 /// Passes over the triangles that [`remove_self_intersections`] makes where nothing touches, for its
 /// progress.
@@ -68,18 +68,12 @@ pub(crate) fn remove_self_intersections(
 
 /// Whether each point is on a rim.
 fn on_rim(surface: &Surface, fans: &Fans, execution: &mut Execution) -> Result<Vec<bool>> {
-    let triangles = &surface.triangles;
-    let mut rims: Vec<bool> = zeros(3 * triangles.len())?;
-    execution.fill(&mut rims, PIECE, |piece, out| {
-        for (i, is_rim) in out.iter_mut().enumerate() {
-            *is_rim = fans.twin(triangles, (PIECE * piece + i) as u32) == NONE;
+    let mut on_rim: Vec<bool> = zeros(surface.points.len())?;
+    execution.fill(&mut on_rim, PIECE, |piece, out| {
+        for (i, on_rim) in out.iter_mut().enumerate() {
+            *on_rim = fans.is_boundary(&surface.triangles, (PIECE * piece + i) as u32);
         }
     })?;
-    let mut on_rim: Vec<bool> = zeros(surface.points.len())?;
-    for (e, _) in rims.iter().enumerate().filter(|(_, is_rim)| **is_rim) {
-        let (a, b) = ends(triangles, e as u32);
-        (on_rim[a as usize], on_rim[b as usize]) = (true, true);
-    }
     Ok(on_rim)
 }
 

@@ -32,6 +32,16 @@ impl Extent {
         (0..3).any(|a| self.from[a] >= self.to[a])
     }
 
+    fn overlaps(&self, other: &Self) -> bool {
+        (0..3).all(|a| self.from[a].max(other.from[a]) < self.to[a].min(other.to[a]))
+    }
+
+    /// Whether it reaches into the row of a run.
+    fn has_row(&self, run: &Run) -> bool {
+        (self.from[1]..self.to[1]).contains(&run.y.into())
+            && (self.from[2]..self.to[2]).contains(&run.z.into())
+    }
+
     /// Whether a run lies in it or beside it, at corners too.
     fn is_near(&self, run: &Run) -> bool {
         let from = [run.start, run.y, run.z].map(i64::from);
@@ -96,39 +106,38 @@ impl Territory {
     }
 
     /// Keeps of the runs of the own piece what belongs to this process, counted in the whole.
-    pub fn clip(&self, runs: &mut Vec<Run>) -> Result<()> {
-        let from = self.extents[self.own].from;
+    pub fn clip(&self, runs: Vec<Run>) -> Result<Vec<Run>> {
+        let own = self.extents[self.own];
+        let [x, y, z] = own.from.map(|v| v as u32);
+        let runs = runs.into_iter().map(|run| Run {
+            start: run.start + x,
+            end: run.end + x,
+            y: run.y + y,
+            z: run.z + z,
+            ..run
+        });
+        let earlier = self.extents[..self.own].iter();
+        let mut earlier: Vec<&Extent> = earlier.filter(|e| e.overlaps(&own)).collect();
+        if earlier.is_empty() {
+            return Ok(runs.collect());
+        }
+        earlier.sort_unstable_by_key(|e| e.from[0]);
         let mut clipped = Vec::new();
-        for run in runs.drain(..) {
-            let [y, z] = [i64::from(run.y) + from[1], i64::from(run.z) + from[2]];
-            let earlier = self.extents[..self.own].iter().filter(|e| {
-                !e.is_empty()
-                    && (e.from[1]..e.to[1]).contains(&y)
-                    && (e.from[2]..e.to[2]).contains(&z)
-            });
-            let mut taken: Vec<[i64; 2]> = earlier.map(|e| [e.from[0], e.to[0]]).collect();
-            taken.sort_unstable();
-            let end = i64::from(run.end) + from[0];
-            let mut start = i64::from(run.start) + from[0];
-            taken.push([end, end]);
-            for [from, to] in taken {
-                if start < from.min(end) {
-                    push(
-                        &mut clipped,
-                        Run {
-                            start: start as u32,
-                            end: from.min(end) as u32,
-                            y: y as u32,
-                            z: z as u32,
-                            ..run
-                        },
-                    )?;
+        for run in runs {
+            let mut start = run.start;
+            for taken in earlier.iter().filter(|e| e.has_row(&run)) {
+                let [from, to] = [taken.from[0], taken.to[0]].map(|v| v as u32);
+                if start < from.min(run.end) {
+                    let end = from.min(run.end);
+                    push(&mut clipped, Run { start, end, ..run })?;
                 }
                 start = start.max(to);
             }
+            if start < run.end {
+                push(&mut clipped, Run { start, ..run })?;
+            }
         }
-        *runs = clipped;
-        Ok(())
+        Ok(clipped)
     }
 
     /// Whether a run may touch one of another process.
