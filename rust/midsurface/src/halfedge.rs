@@ -105,6 +105,20 @@ pub(crate) fn twins(
     Ok(twins)
 }
 
+/// The opposite half-edges of a consistently wound manifold, on the calling thread.
+pub(crate) fn twins_if_wound(triangles: &[[u32; 3]], points: usize) -> Vec<u32> {
+    // By their first points: their ends, too.
+    let leaving = Buckets::new(points, || {
+        half_edges(triangles).map(|(e, a, b)| (a, (b, e)))
+    });
+    let mut twins = Vec::with_capacity(3 * triangles.len());
+    half_edges(triangles).for_each(|(_, a, b)| {
+        let back = leaving.of(b as usize).iter().find(|(end, _)| *end == a);
+        twins.push(back.map_or(NONE, |&(_, f)| f));
+    });
+    twins
+}
+
 /// The half-edges that leave or enter each point p, with p the smaller end: the larger end and the
 /// half-edge, ordered by the larger end.
 pub(crate) struct Edges(Buckets<(u32, u32)>);
@@ -222,13 +236,6 @@ impl Fans {
         let (a, b) = ends(triangles, e);
         let back = |&&f: &&u32| ends(triangles, f).1 == a;
         self.of(b).iter().find(back).copied().unwrap_or(NONE)
-    }
-
-    /// The opposite half-edges of all.
-    pub fn twins(&self, triangles: &[[u32; 3]]) -> Vec<u32> {
-        (0..3 * triangles.len() as u32)
-            .map(|e| self.twin(triangles, e))
-            .collect()
     }
 }
 

@@ -5,7 +5,7 @@
 //! the edge. The triangles that are dragged along may neither fold nor become slivers.
 
 use super::patch::{Kind, Patch};
-use super::shape::{facing, sine_of_smallest_angle};
+use super::shape::{facing, squared_sine};
 use crate::grid::squared_distance;
 use crate::halfedge::{next, previous, NONE};
 
@@ -17,6 +17,8 @@ const LONG: f64 = 4.0 / 3.0;
 const SWEEPS: [f64; 5] = [0.4, 0.6, 0.8, 1.0, 1.0];
 /// No collapse makes an angle smaller than this sine's (12°), unless one was there before.
 const SHARP: f64 = 0.2;
+/// In place of the share of an edge that a collapse has changed, until it is asked for.
+const STALE: f64 = -1.0;
 
 /// Collapses edges that are too short, where that is possible.
 pub(super) fn collapse_short_edges(patch: &mut Patch) {
@@ -31,6 +33,9 @@ pub(super) fn collapse_short_edges(patch: &mut Patch) {
             continue;
         }
         for e in 0..patch.twins.len() as u32 {
+            if shares[e as usize] == STALE {
+                shares[e as usize] = squared_share(patch, e);
+            }
             if shares[e as usize] < limit {
                 let (a, b) = (patch.origin(e), patch.end(e));
                 // The end with fewer edges goes.
@@ -41,11 +46,8 @@ pub(super) fn collapse_short_edges(patch: &mut Patch) {
                 };
                 for (v, u) in order {
                     if may_collapse(patch, e, v, u, LONG, &mut ring) {
-                        let changed = changed_edges(patch, e, &ring);
+                        changed_edges(patch, e, &ring).for_each(|h| shares[h as usize] = STALE);
                         patch.collapse(e, v, u, &ring);
-                        for h in changed {
-                            shares[h as usize] = squared_share(patch, h);
-                        }
                         break;
                     }
                 }
@@ -56,13 +58,12 @@ pub(super) fn collapse_short_edges(patch: &mut Patch) {
 
 /// The half-edges that change if half-edge e is collapsed, one of whose ends `ring` leaves: those of
 /// the triangles around, and those across, two of which become one edge.
-fn changed_edges(patch: &Patch, e: u32, ring: &[u32]) -> Vec<u32> {
-    let sides = [e, patch.twin(e)].into_iter().filter(|&h| h != NONE);
-    let around = ring.iter().copied().chain(sides);
-    let own = around.flat_map(|h| [h, next(h), previous(h)]);
-    own.flat_map(|h| [h, patch.twin(h)])
+fn changed_edges<'a>(patch: &'a Patch, e: u32, ring: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
+    let around = ring.iter().copied().chain([e, patch.twin(e)]);
+    let own = around
         .filter(|&h| h != NONE)
-        .collect()
+        .flat_map(|h| [h, next(h), previous(h)]);
+    own.flat_map(|h| [h, patch.twin(h)]).filter(|&h| h != NONE)
 }
 
 /// Square of an edge's length over the one wanted; infinite for an edge that may not be collapsed,
@@ -100,7 +101,8 @@ pub(super) fn may_collapse(
     }
     ring.clear();
     ring.extend(patch.around(v));
-    keeps_topology(patch, e, u, ring) && keeps_shape(patch, v, u, long, ring)
+    // The topology hardly ever forbids it, and takes longer.
+    keeps_shape(patch, u, long, ring) && keeps_topology(patch, e, u, ring)
 }
 
 fn keeps_topology(patch: &Patch, e: u32, u: u32, ring: &[u32]) -> bool {
@@ -118,9 +120,13 @@ fn keeps_topology(patch: &Patch, e: u32, u: u32, ring: &[u32]) -> bool {
             return false;
         }
     }
+    let around_u: Vec<u32> = patch
+        .around(u)
+        .flat_map(|h| [patch.end(h), patch.opposite(h)])
+        .collect();
     // Neighbours of v: the ends of the ring, and on a boundary the last one's opposite corner.
     let mut common = 0;
-    let mut count = |q: u32| common += usize::from(q != u && patch.joined(u, q));
+    let mut count = |q: u32| common += usize::from(q != u && around_u.contains(&q));
     for &h in ring {
         count(patch.end(h));
     }
@@ -133,24 +139,23 @@ fn keeps_topology(patch: &Patch, e: u32, u: u32, ring: &[u32]) -> bool {
     common == sides.iter().filter(|&&h| h != NONE).count()
 }
 
-fn keeps_shape(patch: &Patch, v: u32, u: u32, long: f64, ring: &[u32]) -> bool {
+fn keeps_shape(patch: &Patch, u: u32, long: f64, ring: &[u32]) -> bool {
     let place = patch.point(u);
     let mut sharpest: f64 = 1.0;
-    let mut sharpest_before: f64 = 1.0;
     for &h in ring {
         let (x, y) = (patch.end(h), patch.opposite(h));
-        let [px, py] = [x, y].map(|p| patch.point(p));
-        sharpest_before = sharpest_before.min(sine_of_smallest_angle([patch.point(v), px, py]));
         if x == u || y == u {
             continue;
         }
+        let [px, py] = [x, y].map(|p| patch.point(p));
         let longest = long * patch.wanted(u, x);
         if squared_distance(place, px) > longest * longest
             || !facing(patch, [u, x, y], [place, px, py])
         {
             return false;
         }
-        sharpest = sharpest.min(sine_of_smallest_angle([place, px, py]));
+        sharpest = sharpest.min(squared_sine([place, px, py]));
     }
-    sharpest >= SHARP.min(sharpest_before)
+    let before = |&h: &u32| squared_sine(patch.corners(h / 3));
+    sharpest >= SHARP * SHARP || sharpest >= ring.iter().map(before).fold(1.0, f64::min)
 }

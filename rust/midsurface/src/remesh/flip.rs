@@ -18,18 +18,18 @@ const GAIN: f64 = 0.01;
 
 /// Flips edges once where that improves the patch.
 pub(super) fn flip_edges(patch: &mut Patch) {
-    sweep(patch, false);
+    for e in 0..patch.twins.len() as u32 {
+        let f = patch.twin(e);
+        if f != NONE && f > e && patch.is_alive(e / 3) && is_better(patch, e, false) {
+            patch.flip(e);
+        }
+    }
 }
 
 /// Flips edges of poor triangles once, where that opens their smallest angle.
-pub(super) fn flip_poor_edges(patch: &mut Patch) {
-    sweep(patch, true);
-}
-
-fn sweep(patch: &mut Patch, poor: bool) {
-    for e in 0..patch.twins.len() as u32 {
-        let f = patch.twin(e);
-        if f != NONE && f > e && patch.is_alive(e / 3) && is_better(patch, e, poor) {
+pub(super) fn flip_edges_of(patch: &mut Patch, poor: &[u32]) {
+    for e in poor.iter().flat_map(|&t| 3 * t..3 * t + 3) {
+        if patch.twin(e) != NONE && is_better(patch, e, true) {
             patch.flip(e);
         }
     }

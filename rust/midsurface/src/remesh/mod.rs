@@ -70,13 +70,9 @@ const SHIFTS: [f64; 5] = [0.0, 0.5, 0.25, 0.75, 0.4];
 const FINE: f64 = 1.8;
 /// Passes at twice the final edge length, and at the final one.
 const COARSE_PASSES: usize = 4;
-const FINE_PASSES: usize = 3;
-/// Of these, the last ones mend what is poor.
-const POLISHING_PASSES: usize = 2;
-/// Times that points are moved in a coarse pass, where stretched triangles have to become even, and
-/// in a fine one.
-const COARSE_RELAXATIONS: usize = 6;
-const FINE_RELAXATIONS: usize = 2;
+const FINE_PASSES: usize = 2;
+/// Times that points are moved in a pass.
+const RELAXATIONS: usize = 4;
 /// Points handed to a worker at a time.
 const PIECE: usize = 4096;
 /// Passes that subdividing makes, repairing, and finding out where the points lie on the reference.
@@ -101,12 +97,11 @@ pub(crate) fn remesh(
     for (number, &longest) in coarse.iter().enumerate() {
         let blocks = Blocks::new(&surface, BLOCK * longest, shift(number), execution)?;
         surface = blocks.work(&surface, &reference, (2.0, longest), execution, |patch| {
-            improve(patch, COARSE_RELAXATIONS);
+            improve(patch);
         })?;
     }
     surface = subdivide(&surface, &reference, execution)?;
     for number in 0..FINE_PASSES {
-        let polishing = number + POLISHING_PASSES >= FINE_PASSES;
         let blocks = Blocks::new(&surface, BLOCK * edge_length, shift(number), execution)?;
         surface = blocks.work(
             &surface,
@@ -114,14 +109,12 @@ pub(crate) fn remesh(
             (1.0, edge_length),
             execution,
             |patch| {
-                improve(patch, FINE_RELAXATIONS);
-                if polishing {
-                    polish::polish(patch);
-                }
+                improve(patch);
+                polish::polish(patch);
             },
         )?;
     }
-    surface = repair::repair(surface, &reference, edge_length)?;
+    surface = repair::repair(surface, &reference, edge_length, execution)?;
     execution.pass_done()?;
     finish(&reference, surface, execution)
 }
@@ -133,10 +126,10 @@ fn shift(pass: usize) -> [f64; 3] {
 }
 
 /// One pass over a block.
-fn improve(patch: &mut Patch, relaxations: usize) {
+fn improve(patch: &mut Patch) {
     split::split_long_edges(patch);
     collapse::collapse_short_edges(patch);
-    for _ in 0..relaxations {
+    for _ in 0..RELAXATIONS {
         flip::flip_edges(patch);
         relax::relax(patch);
     }

@@ -7,7 +7,7 @@
 
 use super::reference::Reference;
 use crate::grid::Vec3;
-use crate::halfedge::{next, previous, NONE};
+use crate::halfedge::{next, previous, twins_if_wound, NONE};
 
 /// Where a point may go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -98,7 +98,7 @@ impl<'a> Patch<'a> {
             triangles,
             free: Vec::new(),
         };
-        patch.twins = crate::halfedge::Fans::new(&patch.triangles, count).twins(&patch.triangles);
+        patch.twins = twins_if_wound(&patch.triangles, count);
         for e in 0..patch.twins.len() as u32 {
             patch.set_out(e);
         }
@@ -126,6 +126,11 @@ impl<'a> Patch<'a> {
 
     pub fn point(&self, p: u32) -> Vec3 {
         self.vertices[p as usize].point
+    }
+
+    /// Where a triangle's corners are.
+    pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        self.triangles[triangle as usize].map(|p| self.point(p))
     }
 
     pub fn is_alive(&self, triangle: u32) -> bool {

@@ -7,10 +7,10 @@
 //! into a neighbour.
 
 use super::collapse::may_collapse;
-use super::flip::{change, flip_poor_edges};
+use super::flip::{change, flip_edges_of};
 use super::patch::{Kind, Patch, Vertex};
 use super::relax::{allows, slid_by};
-use super::shape::sine_of_smallest_angle;
+use super::shape::{sine_of_smallest_angle, squared_sine};
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 
 /// A triangle whose smallest angle is below this sine's (34°) is poor.
@@ -37,15 +37,31 @@ pub(super) fn polish(patch: &mut Patch) {
 pub(super) fn mend_poor(patch: &mut Patch) {
     let mut ring = Vec::new();
     for _ in 0..SWEEPS {
-        flip_poor_edges(patch);
-        for p in 0..patch.vertices.len() as u32 {
-            if !patch.frozen[p as usize] && !patch.is_removed(p) {
-                ring.clear();
-                ring.extend(patch.around(p));
-                mend(patch, p, &ring);
-            }
+        let poor = poor_triangles(patch);
+        if poor.is_empty() {
+            return;
+        }
+        flip_edges_of(patch, &poor);
+        let corners = |t: u32| patch.triangles[t as usize];
+        let mut points: Vec<u32> = poor_triangles(patch)
+            .into_iter()
+            .flat_map(corners)
+            .collect();
+        points.sort_unstable();
+        points.dedup();
+        points.retain(|&p| !patch.frozen[p as usize]);
+        for p in points {
+            ring.clear();
+            ring.extend(patch.around(p));
+            mend(patch, p, &ring);
         }
     }
+}
+
+fn poor_triangles(patch: &Patch) -> Vec<u32> {
+    let is_poor = |t: &u32| squared_sine(patch.corners(*t)) < POOR * POOR;
+    let all = 0..patch.triangles.len() as u32;
+    all.filter(|&t| patch.is_alive(t)).filter(is_poor).collect()
 }
 
 /// Draws an interior point with few edges into the neighbour where that is best for valence.

@@ -6,6 +6,8 @@ use crate::grid::{along, dot, sub, Vec3};
 
 /// No move makes an angle smaller than this sine's (30°), unless one was there before.
 const SHARP: f64 = 0.5;
+/// A point that is this near to where it should be, as a share of the edge length wanted, stays.
+const STILL: f64 = 0.01;
 /// Shares of a move that are tried, until the triangles allow one. Going a little too far gets there
 /// in fewer rounds (successive over-relaxation, Young 1954).
 const SHARES: [f64; 2] = [1.5, 0.5];
@@ -38,6 +40,9 @@ fn moved(patch: &Patch, p: u32, share: f64, ring: &[u32]) -> Option<Vertex> {
             let way = sub(centre(patch, ring), vertex.point);
             let normal = vertex.normal();
             let way = along(way, -dot(way, normal), normal);
+            if dot(way, way) < (STILL * patch.size(p)).powi(2) {
+                return None;
+            }
             let target = along(vertex.point, share, way);
             Some(patch.reference.vertex(vertex.at, target))
         }

@@ -8,6 +8,8 @@
 //! A place where the surface itself is creased more sharply than triangles of this size can follow
 //! stays as it is.
 
+use rayon::prelude::*;
+
 use super::blocks::Surface;
 use super::collapse::may_collapse;
 use super::flip::{flip_edges, may_flip};
@@ -18,6 +20,7 @@ use super::relax::relax;
 use super::shape::{facing, sine_of_smallest_angle};
 use super::split::near_middle;
 use crate::error::{reserved, zeros, Result};
+use crate::execution::Execution;
 use crate::halfedge::{next, previous, NONE};
 
 /// Triangles up to this many edges from a fault are taken out with it.
@@ -35,6 +38,8 @@ const CREASED: f64 = 5.0;
 const GAIN: f64 = 1e-3;
 /// No new edge is so many times longer than wanted.
 const LONG: f64 = 1.7;
+/// Changes that threads try at once.
+const AT_ONCE: usize = 16;
 /// Times that points are moved after a change.
 const RELAXATIONS: usize = 3;
 
@@ -47,17 +52,24 @@ enum Change {
 }
 
 /// Mends the faults of a finished surface, one after the other: there are few.
-pub(super) fn repair(surface: Surface, reference: &Reference, longest: f64) -> Result<Surface> {
+pub(super) fn repair(
+    surface: Surface,
+    reference: &Reference,
+    longest: f64,
+    execution: &Execution,
+) -> Result<Surface> {
     let near = near_faults(&surface)?;
     if !near.contains(&true) {
         return Ok(surface);
     }
     let (mut patch, points) = cut_out(&surface, &near, reference, longest)?;
-    for p in 0..patch.vertices.len() as u32 {
-        if is_fault(&patch, p) {
-            repair_at(&mut patch, p);
+    execution.in_pool(|| {
+        for p in 0..patch.vertices.len() as u32 {
+            if is_fault(&patch, p) {
+                repair_at(&mut patch, p);
+            }
         }
-    }
+    });
     put_back(&surface, &near, &patch, &points)
 }
 
@@ -219,23 +231,33 @@ fn repair_at(patch: &mut Patch, p: u32) {
     }
     let mut best = before - GAIN;
     let mut found = None;
-    for change in changes(&place.patch) {
-        let mut trial = place.patch.clone();
-        if apply(&mut trial, change) {
-            settle(&mut trial, matches!(change, Change::Flip(_)));
-            let cost = cost(&trial);
+    for some in changes(&place.patch).chunks(AT_ONCE) {
+        let outcomes: Vec<_> = some
+            .par_iter()
+            .map(|change| outcome(&place.patch, *change))
+            .collect();
+        for (cost, trial) in outcomes.into_iter().flatten() {
             if cost < best {
                 best = cost;
                 found = Some(trial);
-                if cost == 0.0 {
-                    break;
-                }
             }
+        }
+        if best == 0.0 {
+            break;
         }
     }
     if let Some(trial) = found {
         patch.put_back(place, trial);
     }
+}
+
+/// What becomes of a patch by a change, and what is wrong in it then.
+fn outcome<'a>(patch: &Patch<'a>, change: Change) -> Option<(f64, Patch<'a>)> {
+    let mut trial = patch.clone();
+    apply(&mut trial, change).then(|| {
+        settle(&mut trial, matches!(change, Change::Flip(_)));
+        (cost(&trial), trial)
+    })
 }
 
 /// What is wrong in a patch.

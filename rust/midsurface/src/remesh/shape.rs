@@ -27,14 +27,22 @@ pub(super) fn sine_of_smallest_angle(corners: [Vec3; 3]) -> f64 {
 
 /// Whether a triangle of these corners, placed so, looks where the surface looks there.
 pub(super) fn facing(patch: &Patch, corners: [u32; 3], place: [Vec3; 3]) -> bool {
-    corners
-        .iter()
-        .all(|&p| faces(place, patch.vertices[p as usize].normal()))
+    let area = area(place);
+    let normal = |p: u32| patch.vertices[p as usize].normal();
+    corners.iter().all(|&p| looks(area, normal(p)))
 }
 
 /// Whether a triangle looks about where a unit normal does.
-pub(super) fn faces([a, b, c]: [Vec3; 3], normal: Vec3) -> bool {
-    let area = cross(sub(b, a), sub(c, a));
+pub(super) fn faces(corners: [Vec3; 3], normal: Vec3) -> bool {
+    looks(area(corners), normal)
+}
+
+/// The normal of a triangle, as long as twice its area.
+fn area([a, b, c]: [Vec3; 3]) -> Vec3 {
+    cross(sub(b, a), sub(c, a))
+}
+
+fn looks(area: Vec3, normal: Vec3) -> bool {
     let height = dot(area, normal);
     height > 0.0 && height * height > FACING * FACING * dot(area, area)
 }

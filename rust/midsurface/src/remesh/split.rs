@@ -11,8 +11,10 @@ const LONG: f64 = 4.0 / 3.0;
 /// The longest edges go first, since a split in their triangles would leave others as long: the
 /// limit shrinks from sweep to sweep, as multiples of [`LONG`].
 const SWEEPS: [f64; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 1.0];
-/// The new point may be this share of the edge's length off its middle.
+/// The new point may be this share of the edge's length off its middle; nearer than the second share,
+/// nothing better is looked for.
 const OFF: f64 = 0.3;
+const NEAR: f64 = 0.1;
 
 /// Splits edges until none is too long.
 pub(super) fn split_long_edges(patch: &mut Patch) {
@@ -52,19 +54,19 @@ fn squared_excess(patch: &Patch, e: u32) -> f64 {
 pub(super) fn near_middle(patch: &Patch, e: u32) -> Option<Vertex> {
     let ends = [patch.origin(e), patch.end(e)].map(|p| &patch.vertices[p as usize]);
     let vertex = middle(patch.reference, ends, patch.twin(e) == NONE);
-    is_near(&vertex, ends).then_some(vertex)
+    is_within(OFF, &vertex, ends).then_some(vertex)
 }
 
-/// Whether a vertex lies near the middle of an edge.
-fn is_near(vertex: &Vertex, ends: [&Vertex; 2]) -> bool {
-    let near = OFF * OFF * squared_distance(ends[0].point, ends[1].point);
+/// Whether a vertex lies within a share of an edge's length of its middle.
+fn is_within(share: f64, vertex: &Vertex, ends: [&Vertex; 2]) -> bool {
+    let near = share * share * squared_distance(ends[0].point, ends[1].point);
     squared_distance(vertex.point, centre(ends)) < near
 }
 
 /// A vertex in the middle of an edge, off the reference where that has none near.
 pub(super) fn middle_anyway(reference: &Reference, ends: [&Vertex; 2], border: bool) -> Vertex {
     let mut vertex = middle(reference, ends, border);
-    if !is_near(&vertex, ends) {
+    if !is_within(OFF, &vertex, ends) {
         vertex.point = centre(ends);
     }
     vertex
@@ -79,9 +81,14 @@ fn middle(reference: &Reference, ends: [&Vertex; 2], border: bool) -> Vertex {
             .curve
             .vertex(reference, a.at, a.parameter + 0.5 * way);
     }
-    // A walk may end at an obstacle: from the other end there may be none.
     let centre = centre(ends);
-    let [v, w] = ends.map(|end| reference.vertex(reference.triangle_of(end), centre));
+    let from = |end| reference.vertex(reference.triangle_of(end), centre);
+    let v = from(a);
+    if is_within(NEAR, &v, ends) {
+        return v;
+    }
+    // The walk may have ended at an obstacle: from the other end there may be none.
+    let w = from(b);
     if squared_distance(v.point, centre) <= squared_distance(w.point, centre) {
         v
     } else {

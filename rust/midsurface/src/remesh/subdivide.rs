@@ -10,7 +10,7 @@ use super::reference::Reference;
 use super::split::middle_anyway;
 use crate::error::{reserved, zeros, Error, Result};
 use crate::execution::Execution;
-use crate::halfedge::{ends, Fans, NONE};
+use crate::halfedge::{ends, twins_if_wound, NONE};
 
 /// Edges or triangles handed to a worker at a time.
 const PIECE: usize = 4096;
@@ -23,7 +23,7 @@ pub(super) fn subdivide(
 ) -> Result<Surface> {
     let old = &surface.triangles;
     let count = surface.vertices.len();
-    let twins = Fans::new(old, count).twins(old);
+    let twins = twins_if_wound(old, count);
     // The edge that each half-edge belongs to, numbered by the first of its half-edges.
     let mut edge: Vec<u32> = zeros(twins.len())?;
     let mut firsts: Vec<u32> = reserved(twins.len())?;

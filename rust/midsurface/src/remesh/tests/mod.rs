@@ -6,7 +6,7 @@ use super::{remesh, Remeshed};
 use crate::components::DisjointSets;
 use crate::execution::{Execution, Quiet};
 use crate::grid::{dot, length, sub, unit, Vec3};
-use crate::halfedge::{ends, Fans, NONE};
+use crate::halfedge::{ends, twins_if_wound, NONE};
 use crate::mesh::Mesh;
 
 fn run(shape: &Shape, edge_length: f64, threads: usize) -> Remeshed {
@@ -23,7 +23,7 @@ fn topology(points: &[Vec3], triangles: &[[u32; 3]]) -> [i64; 3] {
         sets.join(t[0] as usize, t[2] as usize);
     }
     let components = (0..points.len()).filter(|&p| sets.find(p) == p).count();
-    let twins = Fans::new(triangles, points.len()).twins(triangles);
+    let twins = twins_if_wound(triangles, points.len());
     let open: Vec<(u32, u32)> = (0..twins.len() as u32)
         .filter(|&e| twins[e as usize] == NONE)
         .map(|e| ends(triangles, e))
@@ -166,7 +166,7 @@ fn rims_and_corners_stay() {
         let there = |p: &Vec3| [p[0], p[1]] == corner;
         assert!(remeshed.points.iter().any(there), "{corner:?}");
     }
-    let twins = Fans::new(&remeshed.triangles, remeshed.points.len()).twins(&remeshed.triangles);
+    let twins = twins_if_wound(&remeshed.triangles, remeshed.points.len());
     for e in (0..twins.len() as u32).filter(|&e| twins[e as usize] == NONE) {
         let [x, y, _] = remeshed.points[ends(&remeshed.triangles, e).0 as usize];
         let off = [x, 30.0 - x, y, 40.0 - y].map(f64::abs);
