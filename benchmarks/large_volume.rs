@@ -135,8 +135,9 @@ fn draw(
             for x in xs.clone() {
                 let p = [x, y, z];
                 let from_centre = std::array::from_fn(|a| p[a] as f64 - centre[a] as f64 + 0.3);
-                let rough = dice.between(-ROUGHNESS, ROUGHNESS);
-                if object.distance(from_centre) < object.half_thickness + rough {
+                let beyond = object.distance(from_centre) - object.half_thickness;
+                // Chance decides near the faces only, and most voxels are far.
+                if beyond < ROUGHNESS && beyond < dice.between(-ROUGHNESS, ROUGHNESS) {
                     labels[row + x] = object.label();
                     voxels += 1;
                 }

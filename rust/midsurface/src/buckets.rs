@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
-use crate::error::{reserved, Result};
+use crate::error::{collected, extend, filled, reserved, zeros, Result};
 use crate::execution::Execution;
 
 /// Buckets handed to a worker at a time.
 const PIECE: usize = 1024;
+/// Items that a bucket seldom has more of, on average over a piece.
+const MOSTLY: usize = 8;
 /// Passes over the buckets that [`Buckets::fill`] makes, for its progress.
 pub(crate) const PASSES: usize = 1;
 
@@ -19,21 +21,21 @@ pub(crate) struct Buckets<T> {
 impl<T: Copy + Default> Buckets<T> {
     /// Sorts items, each given with its bucket, into `count` buckets. `items` is called twice and
     /// has to give the same ones.
-    pub fn new<I: Iterator<Item = (u32, T)>>(count: usize, items: impl Fn() -> I) -> Self {
-        let mut start = vec![0u32; count + 2];
+    pub fn new<I: Iterator<Item = (u32, T)>>(count: usize, items: impl Fn() -> I) -> Result<Self> {
+        let mut start: Vec<u32> = zeros(count + 2)?;
         items().for_each(|(bucket, _)| start[bucket as usize + 2] += 1);
         for b in 1..start.len() {
             start[b] += start[b - 1];
         }
         // Filling moves the start of a bucket, kept one place on, to its end.
-        let mut list = vec![T::default(); start[count + 1] as usize];
+        let mut list = filled(T::default(), start[count + 1] as usize)?;
         items().for_each(|(bucket, item)| {
             let slot = &mut start[bucket as usize + 1];
             list[*slot as usize] = item;
             *slot += 1;
         });
         start.pop();
-        Self { start, list }
+        Ok(Self { start, list })
     }
 
     /// Buckets that `add` fills, in any order, given the list to append to, with `most` items in all.
@@ -49,22 +51,22 @@ impl<T: Copy + Default> Buckets<T> {
         let mut start = reserved(count + 1)?;
         let mut list = reserved(most)?;
         start.push(0);
-        let pieces: Vec<usize> = (0..count).step_by(PIECE).collect();
+        let pieces = collected((0..count).step_by(PIECE))?;
         execution.stream(
             &pieces,
             |&first| {
-                let (mut ends, mut items) = (Vec::with_capacity(PIECE), Vec::new());
+                let (mut ends, mut items) = (reserved(PIECE)?, reserved(MOSTLY * PIECE)?);
                 for bucket in first..(first + PIECE).min(count) {
                     add(bucket, &mut items);
                     ends.push(items.len() as u32);
                 }
-                (ends, items)
+                Ok((ends, items))
             },
-            |(ends, items): (Vec<u32>, Vec<T>)| {
+            |piece: Result<(Vec<u32>, Vec<T>)>| {
+                let (ends, items) = piece?;
                 let before = list.len() as u32;
                 start.extend(ends.into_iter().map(|end| before + end));
-                list.extend(items);
-                Ok(())
+                extend(&mut list, items)
             },
         )?;
         Ok(Self { start, list })

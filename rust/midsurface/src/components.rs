@@ -5,7 +5,7 @@
 //! faces (6 neighbours), since two sheets one voxel apart touch at corners. Sheets of a single
 //! voxel are held together by corners only, so thin parts that touch are one part.
 
-use crate::error::{check_count, Result};
+use crate::error::{check_count, collected, filled, push, zeros, Result};
 use crate::execution::Execution;
 use crate::runs::Run;
 
@@ -40,8 +40,8 @@ impl Part {
 pub(crate) struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
-    pub fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
+    pub fn new(count: usize) -> Result<Self> {
+        Ok(Self(collected(0..count as u32)?))
     }
 
     pub fn find(&mut self, mut i: usize) -> usize {
@@ -61,52 +61,60 @@ impl DisjointSets {
 /// The parts of all labels, ordered by component, and the number of specks left out.
 pub(crate) fn parts(mut runs: Vec<Run>, execution: &mut Execution) -> Result<(Vec<Part>, usize)> {
     check_count("rows of labelled voxels", runs.len(), 1)?;
-    // A stable sort: within a label the order z, y, x stays.
-    runs.sort_by_key(|run| run.label);
+    sort_by_label(&mut runs);
     let mut parts = Vec::new();
     let (mut specks, mut components) = (0, 0);
     let total = runs.len();
     let mut done = 0;
     for runs in runs.chunk_by(|a, b| a.label == b.label) {
-        specks += parts_of_label(runs, &mut components, &mut parts);
+        specks += parts_of_label(runs, &mut components, &mut parts)?;
         done += runs.len();
         execution.report(done as f64 / total as f64)?;
     }
     Ok((parts, specks))
 }
 
+/// Orders runs by label, then by z, y, x. A stable sort by label alone would ask for memory.
+pub(crate) fn sort_by_label(runs: &mut [Run]) {
+    runs.sort_unstable_by_key(|run| (run.label, run.z, run.y, run.start));
+}
+
 /// The 26-connected sets of the runs of one label.
-pub(crate) fn connected(runs: &[Run]) -> DisjointSets {
-    let mut sets = DisjointSets::new(runs.len());
-    for_each_touch(runs, |a, b, _| sets.join(a, b));
-    sets
+pub(crate) fn connected(runs: &[Run]) -> Result<DisjointSets> {
+    let mut sets = DisjointSets::new(runs.len())?;
+    for_each_touch(runs, |a, b, _| {
+        sets.join(a, b);
+        Ok(())
+    })?;
+    Ok(sets)
 }
 
 /// Appends one label's parts and returns its number of specks.
-fn parts_of_label(runs: &[Run], components: &mut u32, parts: &mut Vec<Part>) -> usize {
-    let mut whole = DisjointSets::new(runs.len());
-    let mut faces = DisjointSets::new(runs.len());
+fn parts_of_label(runs: &[Run], components: &mut u32, parts: &mut Vec<Part>) -> Result<usize> {
+    let mut whole = DisjointSets::new(runs.len())?;
+    let mut faces = DisjointSets::new(runs.len())?;
     let mut corners = Vec::new();
     for_each_touch(runs, |a, b, share_a_face| {
         whole.join(a, b);
         if share_a_face {
             faces.join(a, b);
+            Ok(())
         } else {
-            corners.push((a, b));
+            push(&mut corners, (a, b))
         }
-    });
+    })?;
     corners.retain(|&(a, b)| faces.find(a) != faces.find(b));
-    join_thin(runs, &corners, &mut faces);
+    join_thin(runs, &corners, &mut faces)?;
 
-    let (order, specks) = components_by_size(runs, &mut whole);
-    let mut number = vec![u32::MAX; runs.len()];
+    let (order, specks) = components_by_size(runs, &mut whole)?;
+    let mut number = filled(u32::MAX, runs.len())?;
     for (i, &root) in order.iter().enumerate() {
         number[root] = *components + i as u32;
     }
     *components += order.len() as u32;
 
     let first = parts.len();
-    let mut part_of_root = vec![u32::MAX; runs.len()];
+    let mut part_of_root = filled(u32::MAX, runs.len())?;
     for (i, run) in runs.iter().enumerate() {
         let component = number[whole.find(i)];
         if component == u32::MAX {
@@ -115,48 +123,55 @@ fn parts_of_label(runs: &[Run], components: &mut u32, parts: &mut Vec<Part>) -> 
         let part = &mut part_of_root[faces.find(i)];
         if *part == u32::MAX {
             *part = parts.len() as u32;
-            parts.push(Part {
+            let empty = Part {
                 label: run.label,
                 component,
                 runs: Vec::new(),
-            });
+            };
+            push(parts, empty)?;
         }
-        parts[*part as usize].runs.push(*run);
+        push(&mut parts[*part as usize].runs, *run)?;
     }
     // What hangs on by a corner and is no larger than a speck is noise, too.
-    let mut own = parts.split_off(first);
-    own.retain(|part| part.voxels() >= SPECK);
-    own.sort_by_key(|part| part.component);
-    parts.extend(own);
-    specks
+    let mut own = first;
+    for i in first..parts.len() {
+        if parts[i].voxels() >= SPECK {
+            parts.swap(own, i);
+            own += 1;
+        }
+    }
+    parts.truncate(own);
+    // Parts of one component stay in the order of their first voxels.
+    let place = |run: &Run| (run.z, run.y, run.start);
+    parts[first..].sort_unstable_by_key(|part| (part.component, place(&part.runs[0])));
+    Ok(specks)
 }
 
 /// Roots of the components that are not specks, the largest first, and the number of specks.
-fn components_by_size(runs: &[Run], sets: &mut DisjointSets) -> (Vec<usize>, usize) {
-    let mut sizes = vec![0usize; runs.len()];
+fn components_by_size(runs: &[Run], sets: &mut DisjointSets) -> Result<(Vec<usize>, usize)> {
+    let mut sizes: Vec<usize> = zeros(runs.len())?;
     for (i, run) in runs.iter().enumerate() {
         sizes[sets.find(i)] += run.length();
     }
-    let mut roots: Vec<usize> = (0..runs.len()).filter(|&i| sizes[i] > 0).collect();
-    let all = roots.len();
-    roots.retain(|&i| sizes[i] >= SPECK);
+    let all = sizes.iter().filter(|size| **size > 0).count();
+    let mut roots = collected((0..runs.len()).filter(|&i| sizes[i] >= SPECK))?;
     // Equal sizes: the one met first in the volume comes first.
-    roots.sort_by_key(|&i| (std::cmp::Reverse(sizes[i]), i));
+    roots.sort_unstable_by_key(|&i| (std::cmp::Reverse(sizes[i]), i));
     let specks = all - roots.len();
-    (roots, specks)
+    Ok((roots, specks))
 }
 
 /// Joins parts that touch at edges or corners, `corners`, where both are a single voxel thick.
-fn join_thin(runs: &[Run], corners: &[(usize, usize)], faces: &mut DisjointSets) {
+fn join_thin(runs: &[Run], corners: &[(usize, usize)], faces: &mut DisjointSets) -> Result<()> {
     // Only the parts that do touch are looked at: thin voxels less thick ones, 0 for the others.
-    let mut touching = vec![false; runs.len()];
+    let mut touching: Vec<bool> = zeros(runs.len())?;
     for &(a, b) in corners {
         touching[faces.find(a)] = true;
         touching[faces.find(b)] = true;
     }
-    let row_of = RowIndex::new(runs);
-    let mut thin = vec![0i64; runs.len()];
-    let mut looked_at = vec![0usize; runs.len()];
+    let row_of = RowIndex::new(runs)?;
+    let mut thin: Vec<i64> = zeros(runs.len())?;
+    let mut looked_at: Vec<usize> = zeros(runs.len())?;
     for (i, run) in runs.iter().enumerate() {
         let root = faces.find(i);
         looked_at[root] += 1;
@@ -166,12 +181,13 @@ fn join_thin(runs: &[Run], corners: &[(usize, usize)], faces: &mut DisjointSets)
             thin[root] += 2 * count - run.length() as i64;
         }
     }
-    let is_thin: Vec<bool> = (0..runs.len()).map(|i| thin[faces.find(i)] >= 0).collect();
+    let is_thin = collected((0..runs.len()).map(|i| thin[faces.find(i)] >= 0))?;
     for &(a, b) in corners {
         if is_thin[a] && is_thin[b] {
             faces.join(a, b);
         }
     }
+    Ok(())
 }
 
 /// Finds the runs of a row.
@@ -182,17 +198,17 @@ struct RowIndex {
 }
 
 impl RowIndex {
-    fn new(runs: &[Run]) -> Self {
+    fn new(runs: &[Run]) -> Result<Self> {
         let mut starts = Vec::new();
         let mut rows: Vec<(u32, u32)> = Vec::new();
         for (i, run) in runs.iter().enumerate() {
             if rows.last() != Some(&(run.z, run.y)) {
-                rows.push((run.z, run.y));
-                starts.push(i);
+                push(&mut rows, (run.z, run.y))?;
+                push(&mut starts, i)?;
             }
         }
-        starts.push(runs.len());
-        Self { starts, rows }
+        push(&mut starts, runs.len())?;
+        Ok(Self { starts, rows })
     }
 
     /// The range of runs in row (z, y).
@@ -228,8 +244,11 @@ impl RowIndex {
 }
 
 /// Calls `touch(a, b, share_a_face)` for all pairs of runs that are 26-neighbours.
-pub(crate) fn for_each_touch(runs: &[Run], mut touch: impl FnMut(usize, usize, bool)) {
-    let index = RowIndex::new(runs);
+pub(crate) fn for_each_touch(
+    runs: &[Run],
+    mut touch: impl FnMut(usize, usize, bool) -> Result<()>,
+) -> Result<()> {
+    let index = RowIndex::new(runs)?;
     for (i, &(z, y)) in index.rows.iter().enumerate() {
         let row = index.starts[i]..index.starts[i + 1];
         let before = [
@@ -241,11 +260,12 @@ pub(crate) fn for_each_touch(runs: &[Run], mut touch: impl FnMut(usize, usize, b
         for (y, z, shares_face) in before {
             if let (Some(y), Some(z)) = (y, z) {
                 touching(runs, row.clone(), index.row(z, y), |a, b, overlap| {
-                    touch(a, b, shares_face && overlap);
-                });
+                    touch(a, b, shares_face && overlap)
+                })?;
             }
         }
     }
+    Ok(())
 }
 
 /// Walks two rows side by side and calls `touch(a, b, overlap)` for runs that overlap or follow each
@@ -254,12 +274,12 @@ pub(crate) fn touching(
     runs: &[Run],
     mut a: std::ops::Range<usize>,
     mut b: std::ops::Range<usize>,
-    mut touch: impl FnMut(usize, usize, bool),
-) {
+    mut touch: impl FnMut(usize, usize, bool) -> Result<()>,
+) -> Result<()> {
     while !a.is_empty() && !b.is_empty() {
         let (p, q) = (&runs[a.start], &runs[b.start]);
         if p.start <= q.end && q.start <= p.end {
-            touch(a.start, b.start, p.start < q.end && q.start < p.end);
+            touch(a.start, b.start, p.start < q.end && q.start < p.end)?;
         }
         if p.end < q.end {
             a.start += 1;
@@ -267,4 +287,5 @@ pub(crate) fn touching(
             b.start += 1;
         }
     }
+    Ok(())
 }

@@ -21,7 +21,7 @@
 use crate::block::SIDE;
 use crate::bricks::{Batch, Directory, EDGE};
 use crate::crossings::{edge_of_cube, Crossings, STRIDE};
-use crate::error::{reserved, Result};
+use crate::error::{check_count, collected, extend, reserve, reserved, Result};
 use crate::execution::Execution;
 use crate::grid::{length, sub, Vec3};
 use crate::manifold::Surface;
@@ -41,7 +41,7 @@ pub(crate) fn contour(
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<Surface> {
-    let bricks: Vec<usize> = (0..batch.part_of_brick.len()).collect();
+    let bricks = collected(0..batch.part_of_brick.len())?;
     let mut cells: Vec<Cells> = reserved(bricks.len())?;
     let mut surface = Surface::default();
     execution.stream(
@@ -52,7 +52,9 @@ pub(crate) fn contour(
         },
         |(mut own, points)| {
             own.first = surface.points.len() as u32;
-            surface.points.extend(points);
+            check_count("points", surface.points.len() + points.len(), 1)?;
+            reserve(&mut surface.source, points.len())?;
+            extend(&mut surface.points, points)?;
             let part = batch.part_of_brick[cells.len()];
             surface.source.resize(surface.points.len(), part);
             cells.push(own);
@@ -65,8 +67,8 @@ pub(crate) fn contour(
         &bricks,
         |&brick| quadrilaterals(batch, &cells, brick, points),
         |own| {
-            triangles.extend(own);
-            Ok(())
+            check_count("triangles", triangles.len() + own.len(), 3)?;
+            extend(triangles, own)
         },
     )?;
     Ok(surface)

@@ -1,4 +1,7 @@
-//! What can go wrong, each with a message a user can act on.
+//! What can go wrong, each with a message a user can act on; and buffers whose size follows the data,
+//! for which a refusal is one of these errors and not the end of the program.
+
+use bytemuck::{allocation::try_zeroed_vec, Zeroable};
 
 /// Why a call has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -108,33 +111,60 @@ pub enum Error {
 /// A result with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// An empty vector with room for `length` elements, or an error where memory is refused.
+/// So many elements more were refused.
+pub(crate) fn refused<T>(length: usize) -> Error {
+    Error::OutOfMemory(length.saturating_mul(std::mem::size_of::<T>()))
+}
+
+/// An empty vector with room for `length` elements, or an error where memory is refused, as in all
+/// functions below.
 pub(crate) fn reserved<T>(length: usize) -> Result<Vec<T>> {
     let mut buffer = Vec::new();
     buffer
         .try_reserve_exact(length)
-        .map_err(|_| Error::OutOfMemory(length.saturating_mul(std::mem::size_of::<T>())))?;
+        .map_err(|_| refused::<T>(length))?;
     Ok(buffer)
 }
 
-/// Appends an item, or fails where memory is refused.
+/// Makes room for so many items more, and for as many again where items come in many small lots.
+pub(crate) fn reserve<T>(items: &mut Vec<T>, more: usize) -> Result<()> {
+    items.try_reserve(more).map_err(|_| refused::<T>(more))
+}
+
+/// Appends an item.
 pub(crate) fn push<T>(items: &mut Vec<T>, item: T) -> Result<()> {
     if items.len() == items.capacity() {
-        let more = items.len().max(64);
-        items
-            .try_reserve(more)
-            .map_err(|_| Error::OutOfMemory(more.saturating_mul(std::mem::size_of::<T>())))?;
+        reserve(items, items.len().max(64))?;
     }
     items.push(item);
     Ok(())
 }
 
-/// A vector of `length` zeros, or an error where memory is refused.
-pub(crate) fn zeros<T: Clone + Default>(length: usize) -> Result<Vec<T>> {
-    // Asked for first, so that a refusal is an error; then made by the allocator's own zeroing,
-    // which leaves touching the pages to the workers.
-    drop(reserved::<T>(length)?);
-    Ok(vec![T::default(); length])
+/// Appends all that an iterator gives.
+pub(crate) fn extend<T>(items: &mut Vec<T>, more: impl IntoIterator<Item = T>) -> Result<()> {
+    let mut more = more.into_iter();
+    reserve(items, more.size_hint().0)?;
+    more.try_for_each(|item| push(items, item))
+}
+
+/// All that an iterator gives.
+pub(crate) fn collected<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
+    let mut collected = Vec::new();
+    extend(&mut collected, items)?;
+    Ok(collected)
+}
+
+/// So many copies of a value.
+pub(crate) fn filled<T: Clone>(value: T, length: usize) -> Result<Vec<T>> {
+    let mut buffer = reserved(length)?;
+    buffer.resize(length, value);
+    Ok(buffer)
+}
+
+/// A vector of `length` zeros by the allocator's own zeroing, which leaves touching the pages to the
+/// workers.
+pub(crate) fn zeros<T: Zeroable>(length: usize) -> Result<Vec<T>> {
+    try_zeroed_vec(length).map_err(|()| refused::<T>(length))
 }
 
 /// Fails where so many things, each with so many parts, cannot be numbered in 32 bits.

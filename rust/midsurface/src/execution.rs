@@ -191,7 +191,8 @@ impl<'a> Execution<'a> {
             f(item)
         };
         self.batches(items.len(), |pool, range| {
-            let batch: Vec<R> = pool.install(|| items[range].par_iter().map(&f).collect());
+            let mut batch = reserved(range.len())?;
+            pool.install(|| batch.par_extend(items[range].par_iter().map(&f)));
             batch.into_iter().try_for_each(&mut keep)
         })
     }

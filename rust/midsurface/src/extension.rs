@@ -7,7 +7,7 @@
 use crate::bending::{bends, Bend};
 use crate::block::{row, Block, SIDE};
 use crate::bricks::{Batch, BRICK, EDGE};
-use crate::error::Result;
+use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::sheet::{by_offset, dot, Sheet};
@@ -36,7 +36,7 @@ pub(crate) fn extend(
 ) -> Result<()> {
     let bends = bends(batch, sheets, h, execution)?;
     let mut learnt_in = core_rings(batch, distance, sheets, execution)?;
-    let mut open: Vec<usize> = (0..batch.part_of_brick.len()).collect();
+    let mut open = collected(0..batch.part_of_brick.len())?;
     for last in CORE..CORE + rings {
         let mut found: Vec<(usize, Vec<(u16, Sheet)>)> = Vec::new();
         let (before, known_since) = (&*sheets, &learnt_in);
@@ -54,13 +54,13 @@ pub(crate) fn extend(
             },
             |own| {
                 if !own.1.is_empty() {
-                    found.push(own);
+                    push(&mut found, own)?;
                 }
                 Ok(())
             },
         )?;
         // Only bricks next to a change can change in the next ring.
-        let mut next = vec![false; batch.part_of_brick.len()];
+        let mut next: Vec<bool> = zeros(batch.part_of_brick.len())?;
         for (brick, own) in &found {
             for (i, sheet) in own {
                 let entry = brick * BRICK + *i as usize;
@@ -70,7 +70,7 @@ pub(crate) fn extend(
             let (directory, place) = batch.brick(*brick);
             directory.around(place).for_each(|b| next[b] = true);
         }
-        open = (0..next.len()).filter(|&b| next[b]).collect();
+        open = collected((0..next.len()).filter(|&b| next[b]))?;
         if open.is_empty() {
             break;
         }

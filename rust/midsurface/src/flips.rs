@@ -5,6 +5,7 @@
 //! leaves them and opens the smallest angle, and where the surface is flat enough not to change
 //! shape.
 
+use crate::error::{zeros, Result};
 use crate::grid::{cross, dot, squared_distance, sub, unit, Vec3};
 use crate::halfedge::{ends, next, Edges, MOST_AROUND, NONE};
 
@@ -22,9 +23,9 @@ struct Valence {
 }
 
 /// Flips edges of a 2-manifold until the passes are done.
-pub(crate) fn flip_edges(points: &[Vec3], triangles: &mut [[u32; 3]]) {
-    let mut twins = Edges::new(triangles, points.len()).twins();
-    let mut valence = Valence::new(triangles, &twins, points.len());
+pub(crate) fn flip_edges(points: &[Vec3], triangles: &mut [[u32; 3]]) -> Result<()> {
+    let mut twins = Edges::new(triangles, points.len())?.twins()?;
+    let mut valence = Valence::new(triangles, &twins, points.len())?;
     for _ in 0..PASSES {
         let mut flipped = 0;
         for e in 0..twins.len() as u32 {
@@ -36,13 +37,14 @@ pub(crate) fn flip_edges(points: &[Vec3], triangles: &mut [[u32; 3]]) {
             break;
         }
     }
+    Ok(())
 }
 
 impl Valence {
-    fn new(triangles: &[[u32; 3]], twins: &[u32], points: usize) -> Self {
+    fn new(triangles: &[[u32; 3]], twins: &[u32], points: usize) -> Result<Self> {
         let mut valence = Self {
-            count: vec![0; points],
-            boundary: vec![false; points],
+            count: zeros(points)?,
+            boundary: zeros(points)?,
         };
         for e in 0..twins.len() as u32 {
             let (a, b) = ends(triangles, e);
@@ -56,7 +58,7 @@ impl Valence {
                 valence.boundary[b as usize] = true;
             }
         }
-        valence
+        Ok(valence)
     }
 
     /// Squared distance of a point's number of edges from the best one, after `change`.

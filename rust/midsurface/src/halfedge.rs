@@ -1,10 +1,8 @@
 //! Half-edges of a triangle list, as arrays: half-edge 3 t + k goes from corner k of triangle t to
 //! the next corner.
 
-use rayon::prelude::*;
-
 use crate::buckets::Buckets;
-use crate::error::{zeros, Result};
+use crate::error::{collected, filled, reserved, zeros, Result};
 use crate::execution::Execution;
 
 /// No twin: a boundary.
@@ -52,19 +50,12 @@ fn half_edges(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32, u32)> +
 }
 
 /// The triangles that have a corner among some points, ascending.
-pub(crate) fn triangles_at(
-    triangles: &[[u32; 3]],
-    wanted: &[bool],
-    execution: &Execution,
-) -> Vec<u32> {
+pub(crate) fn triangles_at(triangles: &[[u32; 3]], wanted: &[bool]) -> Result<Vec<u32>> {
     let is_there = |t: &u32| {
         let corners = triangles[*t as usize];
         corners.iter().any(|&p| wanted[p as usize])
     };
-    execution.in_pool(|| {
-        let all = (0..triangles.len() as u32).into_par_iter();
-        all.filter(is_there).collect()
-    })
+    collected((0..triangles.len() as u32).filter(is_there))
 }
 
 /// A half-edge with start and end, as what is sorted into a bucket: the smaller end p, and with the
@@ -79,7 +70,7 @@ pub(crate) fn twins(
     points: usize,
     execution: &mut Execution,
 ) -> Result<Vec<u32>> {
-    let mut edges = Buckets::new(points, || half_edges(triangles).map(by_smaller_end));
+    let mut edges = Buckets::new(points, || half_edges(triangles).map(by_smaller_end))?;
     for p in 0..points {
         if edges.of(p).len() > MOST_SEARCHED {
             edges.of_mut(p).sort_unstable();
@@ -106,17 +97,17 @@ pub(crate) fn twins(
 }
 
 /// The opposite half-edges of a consistently wound manifold, on the calling thread.
-pub(crate) fn twins_if_wound(triangles: &[[u32; 3]], points: usize) -> Vec<u32> {
+pub(crate) fn twins_if_wound(triangles: &[[u32; 3]], points: usize) -> Result<Vec<u32>> {
     // By their first points: their ends, too.
     let leaving = Buckets::new(points, || {
         half_edges(triangles).map(|(e, a, b)| (a, (b, e)))
-    });
-    let mut twins = Vec::with_capacity(3 * triangles.len());
+    })?;
+    let mut twins = reserved(3 * triangles.len())?;
     half_edges(triangles).for_each(|(_, a, b)| {
         let back = leaving.of(b as usize).iter().find(|(end, _)| *end == a);
         twins.push(back.map_or(NONE, |&(_, f)| f));
     });
-    twins
+    Ok(twins)
 }
 
 /// The half-edges that leave or enter each point p, with p the smaller end: the larger end and the
@@ -125,12 +116,12 @@ pub(crate) struct Edges(Buckets<(u32, u32)>);
 
 impl Edges {
     /// Sorts the half-edges into buckets by their smaller end, without hashing.
-    pub fn new(triangles: &[[u32; 3]], points: usize) -> Self {
+    pub fn new(triangles: &[[u32; 3]], points: usize) -> Result<Self> {
         Self::of_half_edges(points, || half_edges(triangles))
     }
 
     /// Those of some triangles only.
-    pub fn of_triangles(triangles: &[[u32; 3]], wanted: &[u32], points: usize) -> Self {
+    pub fn of_triangles(triangles: &[[u32; 3]], wanted: &[u32], points: usize) -> Result<Self> {
         Self::of_half_edges(points, || {
             let all = wanted.iter().flat_map(|&t| 3 * t..3 * t + 3);
             all.map(|e| {
@@ -143,12 +134,12 @@ impl Edges {
     fn of_half_edges<I: Iterator<Item = (u32, u32, u32)>>(
         points: usize,
         half_edges: impl Fn() -> I,
-    ) -> Self {
-        let mut edges = Buckets::new(points, || half_edges().map(by_smaller_end));
+    ) -> Result<Self> {
+        let mut edges = Buckets::new(points, || half_edges().map(by_smaller_end))?;
         for p in 0..points {
             edges.of_mut(p).sort_unstable();
         }
-        Self(edges)
+        Ok(Self(edges))
     }
 
     /// All edges, each as its smaller end, its larger end and its half-edges.
@@ -162,15 +153,15 @@ impl Edges {
     }
 
     /// The other half-edge of each edge that exactly two triangles share, whatever their winding.
-    pub fn twins(&self) -> Vec<u32> {
-        let mut twins = vec![NONE; self.0.all().len()];
+    pub fn twins(&self) -> Result<Vec<u32>> {
+        let mut twins = filled(NONE, self.0.all().len())?;
         for (_, _, group) in self.groups() {
             if let [(_, e), (_, f)] = *group {
                 twins[e as usize] = f;
                 twins[f as usize] = e;
             }
         }
-        twins
+        Ok(twins)
     }
 }
 
@@ -179,20 +170,20 @@ pub(crate) struct Fans(Buckets<u32>);
 
 impl Fans {
     /// Sorts the half-edges into buckets by their origin.
-    pub fn new(triangles: &[[u32; 3]], points: usize) -> Self {
-        Self(Buckets::new(points, || {
-            half_edges(triangles).map(|(e, a, _)| (a, e))
-        }))
+    pub fn new(triangles: &[[u32; 3]], points: usize) -> Result<Self> {
+        let leaving = || half_edges(triangles).map(|(e, a, _)| (a, e));
+        Ok(Self(Buckets::new(points, leaving)?))
     }
 
     /// Those of some points only; the others have no half-edges. `around` are the triangles that have
     /// a corner there, ascending, and maybe others.
-    pub fn of_points(triangles: &[[u32; 3]], around: &[u32], wanted: &[bool]) -> Self {
-        Self(Buckets::new(wanted.len(), || {
+    pub fn of_points(triangles: &[[u32; 3]], around: &[u32], wanted: &[bool]) -> Result<Self> {
+        let leaving = || {
             let half_edges = around.iter().flat_map(|&t| 3 * t..3 * t + 3);
             let leaving = half_edges.map(|e| (ends(triangles, e).0, e));
             leaving.filter(|(p, _)| wanted[*p as usize])
-        }))
+        };
+        Ok(Self(Buckets::new(wanted.len(), leaving)?))
     }
 
     /// Whether a point of a consistently wound manifold is on the boundary: not every neighbour is

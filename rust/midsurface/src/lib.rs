@@ -377,7 +377,10 @@ fn find_ridge_surface(
     for_each_batch(parts, execution, 1.0, |parts, execution| {
         let first = mesh.triangles.len();
         ridge_surface::ridge_surface(parts, grid, options.edge_length, &mut mesh, execution)?;
-        let found: BTreeSet<u32> = mesh.components[first..].iter().copied().collect();
+        // One by one: a set made at once would ask for memory for all triangles.
+        let mut found = BTreeSet::new();
+        let found_in_a_row = mesh.components[first..].chunk_by(|a, b| a == b);
+        found_in_a_row.for_each(|of_component| _ = found.insert(of_component[0]));
         for component in parts.chunk_by(|a, b| a.component == b.component) {
             if !found.contains(&component[0].component) {
                 *findings.without.entry(component[0].label).or_default() += 1;
@@ -392,7 +395,7 @@ fn find_ridge_surface(
 
 /// Takes what is left of the progress.
 fn zip(polylines: &Polylines, findings: &mut Findings, execution: &mut Execution) -> Result<Mesh> {
-    let polylines = &*polylines.without_repeats();
+    let polylines = &*polylines.without_repeats()?;
     execution.stage("Zipping polylines", 0.0, 0.6, zipper::PASSES)?;
     let triangles = zipper::zip(polylines, execution)?;
     execution.stage("Making the mesh", 0.6, 1.0, mesh::PASSES)?;

@@ -5,7 +5,7 @@
 //! gives the points on it copies, each moved a little into its own sheet, so that no two points
 //! coincide.
 
-use crate::error::{zeros, Result};
+use crate::error::{filled, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, sub, Vec3};
 use crate::halfedge::{self, ends, next, previous, triangles_at, twins, Fans, MOST_AROUND, NONE};
@@ -66,12 +66,12 @@ fn orient(
     twins: &mut Vec<u32>,
     execution: &mut Execution,
 ) -> Result<()> {
-    let mut turned = vec![None; triangles.len()];
+    let mut turned = filled(None, triangles.len())?;
     let mut stack = Vec::new();
     for seed in 0..triangles.len() {
         if turned[seed].is_none() {
             turned[seed] = Some(false);
-            stack.push(seed);
+            push(&mut stack, seed)?;
         }
         while let Some(t) = stack.pop() {
             let own = turned[t] == Some(true);
@@ -86,7 +86,7 @@ fn orient(
                 match turned[other] {
                     None => {
                         turned[other] = Some(expected);
-                        stack.push(other);
+                        push(&mut stack, other)?;
                     }
                     Some(is) if is != expected => {
                         twins[e as usize] = NONE;
@@ -147,20 +147,20 @@ fn split_points(surface: &mut Surface, twins: &[u32], execution: &mut Execution)
         }
     })?;
     if pinched.contains(&true) {
-        let around = triangles_at(&surface.triangles, &pinched, execution);
-        let corners = Fans::of_points(&surface.triangles, &around, &pinched);
-        let fans = fans_to_part(&corners, &pinched, |_| (back, ahead));
-        part(surface, fans);
+        let around = triangles_at(&surface.triangles, &pinched)?;
+        let corners = Fans::of_points(&surface.triangles, &around, &pinched)?;
+        let fans = fans_to_part(&corners, &pinched, |_| (back, ahead))?;
+        part(surface, fans)?;
     }
     Ok(())
 }
 
 /// Gives each fan of triangles around a point a point of its own, where all are wound the same way
 /// and only the points `among` can be pinched.
-pub(crate) fn split_points_among(surface: &mut Surface, among: &[bool], execution: &Execution) {
+pub(crate) fn split_points_among(surface: &mut Surface, among: &[bool]) -> Result<()> {
     let triangles = &surface.triangles;
-    let around = triangles_at(triangles, among, execution);
-    let corners = Fans::of_points(triangles, &around, among);
+    let around = triangles_at(triangles, among)?;
+    let corners = Fans::of_points(triangles, &around, among)?;
     let end = |e: u32| ends(triangles, e).1;
     let start_before = |e: u32| ends(triangles, previous(e)).0;
     let fans = fans_to_part(&corners, among, |around: &[u32]| {
@@ -172,8 +172,8 @@ pub(crate) fn split_points_among(surface: &mut Surface, among: &[bool], executio
             move |at: u32| find(&|e| end(e) == start_before(at)),
             move |at: u32| find(&|e| start_before(e) == end(at)),
         )
-    });
-    part(surface, fans);
+    })?;
+    part(surface, fans)
 }
 
 /// The fans that share a point with another that comes before, by their first corners: those around
@@ -183,7 +183,7 @@ fn fans_to_part<'a, B: Fn(u32) -> u32, A: Fn(u32) -> u32>(
     corners: &'a Fans,
     among: &[bool],
     steps: impl Fn(&'a [u32]) -> (B, A),
-) -> Vec<Vec<u32>> {
+) -> Result<Vec<Vec<u32>>> {
     let mut fans = Vec::new();
     for p in (0..among.len() as u32).filter(|&p| among[p as usize]) {
         let corners = corners.of(p);
@@ -199,26 +199,28 @@ fn fans_to_part<'a, B: Fn(u32) -> u32, A: Fn(u32) -> u32>(
                 seen[corners.partition_point(|other| other < c)] = true;
             }
             if i > 0 {
-                fans.push(fan);
+                push(&mut fans, fan)?;
             }
         }
     }
     fans.sort_unstable_by_key(|fan| fan[0]);
-    fans
+    Ok(fans)
 }
 
 /// Gives each of these fans a point of its own.
-fn part(surface: &mut Surface, fans: Vec<Vec<u32>>) {
+fn part(surface: &mut Surface, fans: Vec<Vec<u32>>) -> Result<()> {
     for fan in fans {
         let p = ends(&surface.triangles, fan[0]).0 as usize;
         let copy = surface.points.len() as u32;
         let place = moved_into(surface, p, &fan);
-        surface.points.push(place);
-        surface.source.push(surface.source[p]);
+        push(&mut surface.points, place)?;
+        let source = surface.source[p];
+        push(&mut surface.source, source)?;
         for &c in &fan {
             surface.triangles[c as usize / 3][c as usize % 3] = copy;
         }
     }
+    Ok(())
 }
 
 /// Visits the corners around the point at `corner` that are joined through shared edges, given the

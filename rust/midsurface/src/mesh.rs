@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use crate::components::DisjointSets;
-use crate::error::{reserved, zeros, Result};
+use crate::error::{collected, filled, push, reserved, zeros, Error, Result};
 use crate::execution::Execution;
 use crate::flips::flip_edges;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
@@ -72,6 +72,15 @@ pub enum InvariantViolation {
     /// A point no triangle uses.
     #[error("point {0} belongs to no triangle")]
     Unused(usize),
+    /// Memory for checking was refused.
+    #[error("the mesh could not be checked: not enough memory")]
+    Unchecked,
+}
+
+impl From<Error> for InvariantViolation {
+    fn from(_: Error) -> Self {
+        Self::Unchecked
+    }
 }
 
 impl Mesh {
@@ -82,18 +91,18 @@ impl Mesh {
         execution: &mut Execution,
     ) -> Result<Self> {
         let mut surface = Surface {
-            points: polylines.points.clone(),
-            source: (0..polylines.points.len() as u32).collect(),
-            triangles: zipped.iter().map(|z| z.0).collect(),
+            points: collected(polylines.points.iter().copied())?,
+            source: collected(0..polylines.points.len() as u32)?,
+            triangles: collected(zipped.iter().map(|z| z.0))?,
         };
         make_manifold(&mut surface, execution)?;
-        flip_edges(&surface.points, &mut surface.triangles);
+        flip_edges(&surface.points, &mut surface.triangles)?;
         execution.pass_done()?;
-        turn_outward(&surface.points, &mut surface.triangles);
+        turn_outward(&surface.points, &mut surface.triangles)?;
         execution.pass_done()?;
-        let fans = Fans::new(&surface.triangles, surface.points.len());
+        let fans = Fans::new(&surface.triangles, surface.points.len())?;
         let rough = normals(&surface.points, &surface.triangles, &fans, execution)?;
-        let lines = lines_of_points(polylines, &surface.source);
+        let lines = lines_of_points(polylines, &surface.source)?;
         flatten_terraces(
             &mut surface.points,
             (&surface.triangles, &fans),
@@ -103,18 +112,14 @@ impl Mesh {
             execution,
         )?;
         let fans = match drop_degenerate(&mut surface, |p| p.map(|v| v as f32), execution)? {
-            true => Fans::new(&surface.triangles, surface.points.len()),
+            true => Fans::new(&surface.triangles, surface.points.len())?,
             false => fans,
         };
-        let line_of = line_of_points(polylines);
+        let line_of = line_of_points(polylines)?;
         let line = |t: &[u32; 3]| &polylines.lines[line_of[surface.source[t[0] as usize] as usize]];
         let mut mesh = Self {
-            labels: surface.triangles.iter().map(|t| line(t).label).collect(),
-            components: surface
-                .triangles
-                .iter()
-                .map(|t| line(t).component)
-                .collect(),
+            labels: collected(surface.triangles.iter().map(|t| line(t).label))?,
+            components: collected(surface.triangles.iter().map(|t| line(t).component))?,
             ..Self::default()
         };
         let normals = normals(&surface.points, &surface.triangles, &fans, execution)?;
@@ -122,17 +127,17 @@ impl Mesh {
         let mut number: Vec<u32> = zeros(surface.points.len())?;
         mesh.triangles = reserved(surface.triangles.len())?;
         for triangle in &surface.triangles {
-            mesh.triangles.push(triangle.map(|p| {
-                let p = p as usize;
+            for p in triangle.map(|p| p as usize) {
                 if number[p] == 0 {
-                    number[p] = mesh.points.len() as u32 + 1;
-                    mesh.points.push(surface.points[p].map(|v| v as f32));
-                    mesh.normals.push(normals[p].map(|v| v as f32));
-                    mesh.thickness
-                        .push(polylines.thickness[surface.source[p] as usize]);
+                    push(&mut mesh.points, surface.points[p].map(|v| v as f32))?;
+                    push(&mut mesh.normals, normals[p].map(|v| v as f32))?;
+                    let thickness = polylines.thickness[surface.source[p] as usize];
+                    push(&mut mesh.thickness, thickness)?;
+                    number[p] = mesh.points.len() as u32;
                 }
-                number[p] - 1
-            }));
+            }
+            mesh.triangles
+                .push(triangle.map(|p| number[p as usize] - 1));
         }
         Ok(mesh)
     }
@@ -141,7 +146,7 @@ impl Mesh {
     /// duplicate, degenerate or unused.
     pub fn check_invariants(&self) -> std::result::Result<(), InvariantViolation> {
         self.check_arrays()?;
-        let edges = Edges::new(&self.triangles, self.points.len());
+        let edges = Edges::new(&self.triangles, self.points.len())?;
         for (a, b, group) in edges.groups() {
             match group {
                 [_] => {}
@@ -157,7 +162,7 @@ impl Mesh {
                 _ => return Err(InvariantViolation::NonManifoldEdge(a, b)),
             }
         }
-        self.check_fans(&edges.twins())
+        self.check_fans(&edges.twins()?)
     }
 
     /// The points of a half-edge's triangle, ascending.
@@ -185,7 +190,7 @@ impl Mesh {
                 return Err(InvariantViolation::NotFinite(i));
             }
         }
-        let mut used = vec![false; self.points.len()];
+        let mut used: Vec<bool> = zeros(self.points.len())?;
         for (i, triangle) in self.triangles.iter().enumerate() {
             for &p in triangle {
                 *used
@@ -203,14 +208,14 @@ impl Mesh {
 
     /// Every point's corners must hang together through shared edges.
     fn check_fans(&self, twins: &[u32]) -> std::result::Result<(), InvariantViolation> {
-        let mut fans = DisjointSets::new(twins.len());
+        let mut fans = DisjointSets::new(twins.len())?;
         for e in 0..twins.len() as u32 {
             let twin = twins[e as usize];
             if twin != NONE {
                 fans.join(e as usize, crate::halfedge::next(twin) as usize);
             }
         }
-        let mut fan_of = vec![NONE; self.points.len()];
+        let mut fan_of = filled(NONE, self.points.len())?;
         for corner in 0..twins.len() {
             let p = self.triangles[corner / 3][corner % 3];
             let fan = fans.find(corner) as u32;
@@ -261,17 +266,17 @@ pub(crate) fn drop_degenerate(
 }
 
 /// The line each point of the polylines is on.
-fn line_of_points(polylines: &Polylines) -> Vec<usize> {
-    let mut line_of = vec![0; polylines.points.len()];
+fn line_of_points(polylines: &Polylines) -> Result<Vec<usize>> {
+    let mut line_of = zeros(polylines.points.len())?;
     for (i, line) in polylines.lines.iter().enumerate() {
         line_of[line.first..line.first + line.count].fill(i);
     }
-    line_of
+    Ok(line_of)
 }
 
 /// What the low-pass asks about the lines of the points, which are copies of `source`.
-fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Vec<LineOfPoint> {
-    let mut known = vec![LineOfPoint::default(); polylines.points.len()];
+fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Result<Vec<LineOfPoint>> {
+    let mut known = filled(LineOfPoint::default(), polylines.points.len())?;
     let mut slices: BTreeMap<u32, [i64; 2]> = BTreeMap::new();
     for line in &polylines.lines {
         let ends = slices.entry(line.component).or_insert([line.slice; 2]);
@@ -295,7 +300,7 @@ fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Vec<LineOfPoint> {
             };
         }
     }
-    source.iter().map(|&p| known[p as usize]).collect()
+    collected(source.iter().map(|&p| known[p as usize]))
 }
 
 /// Twice the area of a closed line, as a vector across its plane (Newell).
@@ -307,15 +312,15 @@ fn area(points: &[Vec3]) -> Vec3 {
 }
 
 /// Turns each connected piece as a whole so that its normals point away from its middle.
-pub(crate) fn turn_outward(points: &[Vec3], triangles: &mut [[u32; 3]]) {
-    let mut sets = DisjointSets::new(points.len());
+pub(crate) fn turn_outward(points: &[Vec3], triangles: &mut [[u32; 3]]) -> Result<()> {
+    let mut sets = DisjointSets::new(points.len())?;
     for t in triangles.iter() {
         sets.join(t[0] as usize, t[1] as usize);
         sets.join(t[0] as usize, t[2] as usize);
     }
-    let roots: Vec<usize> = triangles.iter().map(|t| sets.find(t[0] as usize)).collect();
-    let mut middle = vec![([0.0; 3], 0.0); points.len()];
-    let mut outward = vec![0.0; points.len()];
+    let roots = collected(triangles.iter().map(|t| sets.find(t[0] as usize)))?;
+    let mut middle: Vec<(Vec3, f64)> = zeros(points.len())?;
+    let mut outward: Vec<f64> = zeros(points.len())?;
     let normal_and_centre = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|p| points[p as usize]);
         let centre: Vec3 = std::array::from_fn(|k| (a[k] + b[k] + c[k]) / 3.0);
@@ -337,4 +342,5 @@ pub(crate) fn turn_outward(points: &[Vec3], triangles: &mut [[u32; 3]]) {
             t.swap(1, 2);
         }
     }
+    Ok(())
 }

@@ -67,7 +67,7 @@ pub(crate) fn move_midway(
     surface: &mut Surface,
     execution: &mut Execution,
 ) -> Result<()> {
-    let fans = Fans::new(&surface.triangles, surface.points.len());
+    let fans = Fans::new(&surface.triangles, surface.points.len())?;
     let neighbours = fans.neighbours(&surface.triangles, execution)?;
     for step in MOVES {
         move_once(label, surface, (&fans, &neighbours), step, execution)?;

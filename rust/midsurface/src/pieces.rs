@@ -10,8 +10,10 @@
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
-use crate::components::{connected, for_each_touch, parts, DisjointSets, Part, SPECK};
-use crate::error::{check_count, push, reserved, Error, Result};
+use crate::components::{
+    connected, for_each_touch, parts, sort_by_label, DisjointSets, Part, SPECK,
+};
+use crate::error::{check_count, collected, filled, push, reserved, Error, Result};
 use crate::exchange::Team;
 use crate::execution::Execution;
 use crate::grid::Grid;
@@ -48,8 +50,7 @@ pub(crate) fn gather_parts(
     let held = piece.map_or(Ok(0), |volume| volume.grid.voxel_count())?;
     agree_on_labels(&scan, &wanted, held, team, execution)?;
     let mut runs = territory.clip(scan.runs)?;
-    // A stable sort: within a label the order z, y, x stays.
-    runs.sort_by_key(|run| run.label);
+    sort_by_label(&mut runs);
     let found = LocalComponents::find(&runs)?;
     execution.pass_done()?;
     let decided = found.agree(&runs, &territory, voxels, team, execution)?;
@@ -115,18 +116,19 @@ impl LocalComponents {
             of_run: reserved(runs.len())?,
         };
         for of_label in runs.chunk_by(|a, b| a.label == b.label) {
-            let mut sets = connected(of_label);
+            let mut sets = connected(of_label)?;
             let first = found.of_run.len();
             for (i, run) in of_label.iter().enumerate() {
                 let root = sets.find(i);
                 // The smallest index stands for a set, so that its number is known by now.
                 if root == i {
                     found.of_run.push(found.components.len() as u32);
-                    found.components.push(Component {
+                    let component = Component {
                         label: run.label,
                         voxels: 0,
                         first: [run.z, run.y, run.start].map(i64::from),
-                    });
+                    };
+                    push(&mut found.components, component)?;
                 } else {
                     found.of_run.push(found.of_run[first + root]);
                 }
@@ -165,10 +167,7 @@ impl LocalComponents {
         };
         let mut answers = team.swap(answers)?;
         let answer = answers.swap_remove(crate::exchange::FIRST);
-        Ok(answer
-            .chunks_exact(2)
-            .map(|pair| [pair[0], pair[1]])
-            .collect())
+        collected(answer.chunks_exact(2).map(|pair| [pair[0], pair[1]]))
     }
 }
 
@@ -225,17 +224,18 @@ fn decide(
         starts.push(components.len());
     }
     check_count("components", components.len(), 1)?;
-    let mut sets = join_across(&mut beside, components.len());
-    let decided = number_and_deal(&components, &mut sets, voxels, processes, execution);
-    let of_process = |pair: &[usize]| decided[pair[0]..pair[1]].concat();
-    Ok(starts.windows(2).map(of_process).collect())
+    let mut sets = join_across(&mut beside, components.len())?;
+    let decided = number_and_deal(&components, &mut sets, voxels, processes, execution)?;
+    let of_process =
+        |pair: &[usize]| collected(decided[pair[0]..pair[1]].as_flattened().iter().copied());
+    starts.windows(2).map(of_process).collect()
 }
 
 /// Joins the components whose runs beside other pieces touch.
-fn join_across(beside: &mut [(Run, u32)], components: usize) -> DisjointSets {
-    let mut sets = DisjointSets::new(components);
+fn join_across(beside: &mut [(Run, u32)], components: usize) -> Result<DisjointSets> {
+    let mut sets = DisjointSets::new(components)?;
     beside.sort_unstable_by_key(|(run, _)| (run.label, run.z, run.y, run.start));
-    let runs: Vec<Run> = beside.iter().map(|(run, _)| *run).collect();
+    let runs = collected(beside.iter().map(|(run, _)| *run))?;
     let mut first = 0;
     for of_label in runs.chunk_by(|a, b| a.label == b.label) {
         let component = |i: usize| beside[first + i].1 as usize;
@@ -244,10 +244,13 @@ fn join_across(beside: &mut [(Run, u32)], components: usize) -> DisjointSets {
                 sets.join(component(i - 1), component(i));
             }
         }
-        for_each_touch(of_label, |a, b, _| sets.join(component(a), component(b)));
+        for_each_touch(of_label, |a, b, _| {
+            sets.join(component(a), component(b));
+            Ok(())
+        })?;
         first += of_label.len();
     }
-    sets
+    Ok(sets)
 }
 
 /// Whether two runs of a label are one that was cut between pieces.
@@ -263,8 +266,8 @@ fn number_and_deal(
     voxels: usize,
     processes: usize,
     execution: &mut Execution,
-) -> Vec<[i64; 2]> {
-    let mut whole: Vec<Option<Component>> = vec![None; components.len()];
+) -> Result<Vec<[i64; 2]>> {
+    let mut whole: Vec<Option<Component>> = filled(None, components.len())?;
     for (i, c) in components.iter().enumerate() {
         let joined = whole[sets.find(i)].get_or_insert(Component { voxels: 0, ..*c });
         joined.voxels += c.voxels;
@@ -274,13 +277,13 @@ fn number_and_deal(
     let mut specks = 0;
     for (i, component) in whole.iter().enumerate() {
         match component {
-            Some(c) if c.voxels >= SPECK as i64 => order.push((i, *c)),
+            Some(c) if c.voxels >= SPECK as i64 => push(&mut order, (i, *c))?,
             Some(_) => specks += 1,
             None => {}
         }
     }
-    order.sort_by_key(|(_, c)| (c.label, Reverse(c.voxels), c.first));
-    let mut decided = vec![[LEFT_OUT, 0]; components.len()];
+    order.sort_unstable_by_key(|(i, c)| (c.label, Reverse(c.voxels), c.first, *i));
+    let mut decided = filled([LEFT_OUT, 0], components.len())?;
     for (number, (root, c)) in order.iter().enumerate() {
         if c.voxels as usize == voxels {
             report_full(execution);
@@ -289,16 +292,14 @@ fn number_and_deal(
         }
     }
     report_specks(specks, execution);
-    order.sort_by_key(|(_, c)| Reverse(c.voxels));
+    order.sort_unstable_by_key(|(i, c)| (Reverse(c.voxels), c.label, c.first, *i));
     let mut load = vec![0; processes];
     for (root, c) in &order {
         let owner = (0..processes).min_by_key(|&p| load[p]).unwrap_or(0);
         load[owner] += c.voxels;
         decided[*root][1] = owner as i64;
     }
-    (0..components.len())
-        .map(|i| decided[sets.find(i)])
-        .collect()
+    collected((0..components.len()).map(|i| decided[sets.find(i)]))
 }
 
 /// Sends every run to the process that works on its component. Returns the runs of the own

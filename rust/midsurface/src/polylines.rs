@@ -11,7 +11,7 @@ use crate::bricks::{Batch, Directory};
 use crate::centre::{centre, complete, Which};
 use crate::components::Part;
 use crate::ends::{ends_on_border, put_on_border, Line};
-use crate::error::Result;
+use crate::error::{collected, extend, push, Result};
 use crate::execution::Execution;
 use crate::grid::{Grid, Vec3};
 use crate::interpolation::Sampler;
@@ -84,16 +84,11 @@ pub(crate) fn polylines(
     execution: &mut Execution,
 ) -> Result<usize> {
     let h = grid.work_spacing();
-    let jobs: Vec<(usize, &[Run])> = batch
-        .parts
-        .iter()
-        .enumerate()
-        .flat_map(|(i, part)| {
-            part.runs
-                .chunk_by(|a, b| a.z == b.z)
-                .map(move |runs| (i, runs))
-        })
-        .collect();
+    let slices = batch.parts.iter().enumerate().flat_map(|(i, part)| {
+        let slices = part.runs.chunk_by(|a, b| a.z == b.z);
+        slices.map(move |runs| (i, runs))
+    });
+    let jobs = collected(slices)?;
     let mut disks = 0;
     let mut job = jobs.iter();
     execution.stream(
@@ -109,10 +104,11 @@ pub(crate) fn polylines(
                 runs,
             )
         },
-        |found: SliceLines| {
+        |found: Result<SliceLines>| {
+            let found = found?;
             disks += found.disks;
             if let Some(&(part, runs)) = job.next() {
-                append(polylines, found, &batch.parts[part], runs[0].z, grid);
+                append(polylines, found, &batch.parts[part], runs[0].z, grid)?;
             }
             Ok(())
         },
@@ -150,31 +146,31 @@ impl<'a> PartField<'a> {
 }
 
 /// All lines of one slice of a part.
-fn trace_slice(part: PartField, runs: &[Run]) -> SliceLines {
+fn trace_slice(part: PartField, runs: &[Run]) -> Result<SliceLines> {
     let z = runs[0].z as usize;
-    let mut slice = Slice::new(part.sampler(&part.field.fraction), &part.field.sheets, z);
+    let mut slice = Slice::new(part.sampler(&part.field.fraction), &part.field.sheets, z)?;
     let mut found = SliceLines::default();
-    for (number, pixels) in slice.components(runs).into_iter().enumerate() {
+    for (number, pixels) in slice.components(runs)?.into_iter().enumerate() {
         let component = number as u32;
         let is_speck = area(&slice, &pixels) < SMALLEST_DISK;
         let mut regions = vec![(pixels, 0)];
         let mut primary = true;
         while let Some((pixels, attempt)) = regions.pop() {
-            let line = trace_region(part, &mut slice, &pixels, component, primary, attempt);
+            let line = trace_region(part, &mut slice, &pixels, component, primary, attempt)?;
             primary &= line.is_none();
             let attempt = if line.is_some() { 0 } else { attempt + 1 };
             if let Some(line) = line {
                 found.lines.push(finish(part, &slice, line));
             }
             if attempt < ATTEMPTS {
-                let rest = slice.uncovered(&pixels).into_iter();
+                let rest = slice.uncovered(&pixels)?.into_iter();
                 let rest = rest.filter(|region| region.len() >= SMALLEST_REGION);
                 regions.extend(rest.map(|region| (region, attempt)));
             }
         }
         found.disks += usize::from(primary && !is_speck);
     }
-    found
+    Ok(found)
 }
 
 /// Moves a line's points to the middle between both faces, and measures the thickness there.
@@ -222,9 +218,9 @@ fn trace_region(
     component: u32,
     primary: bool,
     attempt: usize,
-) -> Option<Trace> {
+) -> Result<Option<Trace>> {
     let unit = slice.h()[0].min(slice.h()[1]);
-    let seed = seed(part, slice.z, pixels, attempt);
+    let seed = seed(part, slice.z, pixels, attempt)?;
     let start = slice.centre(seed);
     let limit = 4 * pixels.len() + 64;
     let line = trace(slice, start, component, limit)
@@ -244,7 +240,7 @@ fn trace_region(
     }
     // Whatever the line covers, the region shrinks, so that regions come to an end.
     slice.set(seed.map(|v| v as isize), COVERED);
-    line.and_then(|(_, line)| resample(slice, line, SPACING * unit, slice.z % 2 == 1))
+    Ok(line.and_then(|(_, line)| resample(slice, line, SPACING * unit, slice.z % 2 == 1)))
 }
 
 /// Whether the region of a line is a disk: its line is short against what lies beside it.
@@ -268,12 +264,12 @@ fn area(slice: &Slice, pixels: &[Pixel]) -> f64 {
 
 /// Where a region's line starts: at the peak of the ridge field, and where that failed, lower: in a
 /// network of sheets the peak is a crossing, which has no direction.
-fn seed(part: PartField, z: usize, pixels: &[Pixel], attempt: usize) -> Pixel {
+fn seed(part: PartField, z: usize, pixels: &[Pixel], attempt: usize) -> Result<Pixel> {
     let height = |p: &Pixel| {
         let entry = part.directory.entry([p[0], p[1], z]);
         entry.map_or(0.0, |entry| part.field.ridge[entry])
     };
-    let mut ranked: Vec<(f32, Pixel)> = pixels.iter().map(|p| (height(p), *p)).collect();
+    let mut ranked = collected(pixels.iter().map(|p| (height(p), *p)))?;
     let quantile = if pixels.len() < LEAST_RANKED {
         1.0
     } else {
@@ -281,7 +277,7 @@ fn seed(part: PartField, z: usize, pixels: &[Pixel], attempt: usize) -> Pixel {
     };
     let rank = ((ranked.len() - 1) as f64 * quantile) as usize;
     let by_height = |a: &(f32, Pixel), b: &(f32, Pixel)| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1));
-    ranked.select_nth_unstable_by(rank, by_height).1 .1
+    Ok(ranked.select_nth_unstable_by(rank, by_height).1 .1)
 }
 
 /// Unit tangent at point i.
@@ -336,24 +332,32 @@ fn half_width(slice: &Slice, p: Point, tangent: Point, component: u32) -> f64 {
 }
 
 /// Moves a slice's lines into world coordinates and appends them.
-fn append(polylines: &mut Polylines, found: SliceLines, part: &Part, z: u32, grid: &Grid) {
+fn append(
+    polylines: &mut Polylines,
+    found: SliceLines,
+    part: &Part,
+    z: u32,
+    grid: &Grid,
+) -> Result<()> {
     let h = grid.work_spacing();
     let across = |p: &Point, a: usize| p[a].min((grid.dimensions[a] - 1) as f64 * h[a] - p[a]);
     for line in found.lines {
-        polylines.lines.push(Polyline {
+        let polyline = Polyline {
             first: polylines.points.len(),
             count: line.points.len(),
             closed: line.closed,
             label: part.label,
             component: part.component,
             slice: grid.extent_start[2] + i64::from(z),
-        });
+        };
+        push(&mut polylines.lines, polyline)?;
         let world = |p: &Point| grid.world([p[0] / h[0], p[1] / h[1], f64::from(z)]);
-        polylines.points.extend(line.points.iter().map(world));
+        extend(&mut polylines.points, line.points.iter().map(world))?;
         let scaled = line.thickness.iter().map(|t| (t * grid.unit()) as f32);
-        polylines.thickness.extend(scaled);
+        extend(&mut polylines.thickness, scaled)?;
         let border = |p: &Point| across(p, 0).min(across(p, 1)).max(0.0) * grid.unit();
         let distances = line.points.iter().map(|p| border(p) as f32);
-        polylines.border_distance.extend(distances);
+        extend(&mut polylines.border_distance, distances)?;
     }
+    Ok(())
 }

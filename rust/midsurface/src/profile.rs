@@ -10,7 +10,7 @@
 
 use crate::block::{Block, Layer};
 use crate::bricks::{Batch, BRICK, EDGE, LAYER};
-use crate::error::Result;
+use crate::error::{collected, Result};
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::scale::HalfThickness;
@@ -198,7 +198,7 @@ fn smooth_level(
         return Ok(Vec::new());
     };
     let kernels = [Kernel::repeating(sigma, REACH * sigma, h, directory)];
-    let mut active: Vec<bool> = wanted.iter().map(|w| w >> level & 1 == 1).collect();
+    let mut active = collected(wanted.iter().map(|w| w >> level & 1 == 1))?;
     for _ in 0..rings(level, h) {
         active = execution.collect(active.len(), |brick| {
             let (directory, place) = batch.brick(brick);

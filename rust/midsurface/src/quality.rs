@@ -1,5 +1,6 @@
 //! The figures a mesh is judged by (MidSurfer, section "Mesh quality").
 
+use crate::error::{zeros, Result};
 use crate::grid::{cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::Edges;
 use crate::mesh::Mesh;
@@ -25,13 +26,16 @@ pub struct Quality {
 
 impl Mesh {
     /// Shape and valence of the triangles; all zero for an empty mesh.
-    pub fn quality(&self) -> Quality {
+    ///
+    /// # Errors
+    /// Where memory is refused.
+    pub fn quality(&self) -> Result<Quality> {
         let corners = self
             .triangles
             .iter()
             .map(|t| t.map(|p| self.points[p as usize].map(f64::from)));
-        let edges = Edges::new(&self.triangles, self.points.len());
-        QualitySums::of(corners, &edges, self.points.len()).quality()
+        let edges = Edges::new(&self.triangles, self.points.len())?;
+        Ok(QualitySums::of(corners, &edges, self.points.len())?.quality())
     }
 }
 
@@ -51,8 +55,12 @@ pub(crate) struct QualitySums {
 
 impl QualitySums {
     /// Of triangles given by their corners, with the edges of a mesh of `points` points, all in use.
-    pub fn of(triangles: impl Iterator<Item = [Vec3; 3]>, edges: &Edges, points: usize) -> Self {
-        let [interior, valence_567] = valences(edges, points);
+    pub fn of(
+        triangles: impl Iterator<Item = [Vec3; 3]>,
+        edges: &Edges,
+        points: usize,
+    ) -> Result<Self> {
+        let [interior, valence_567] = valences(edges, points)?;
         let mut sums = Self::from([
             0.0,
             0.0,
@@ -75,7 +83,7 @@ impl QualitySums {
             sums.under_30 += count(&|a| a < 30.0);
             sums.over_120 += count(&|a| a > 120.0);
         }
-        sums
+        Ok(sums)
     }
 
     /// The sums of two pieces that share no points.
@@ -138,9 +146,9 @@ impl From<[f64; QualitySums::LENGTH]> for QualitySums {
 }
 
 /// Number of points off the boundary, and of those among them that have five to seven edges.
-fn valences(edges: &Edges, points: usize) -> [f64; 2] {
-    let mut valence = vec![0u32; points];
-    let mut boundary = vec![false; points];
+fn valences(edges: &Edges, points: usize) -> Result<[f64; 2]> {
+    let mut valence: Vec<u32> = zeros(points)?;
+    let mut boundary: Vec<bool> = zeros(points)?;
     for (a, b, group) in edges.groups() {
         for p in [a, b] {
             valence[p as usize] += 1;
@@ -152,7 +160,7 @@ fn valences(edges: &Edges, points: usize) -> [f64; 2] {
         .iter()
         .zip(&boundary)
         .filter(|(v, b)| !**b && (5..=7).contains(*v));
-    [interior as f64, good.count() as f64]
+    Ok([interior as f64, good.count() as f64])
 }
 
 /// Area, Q and the angles in degrees.

@@ -14,9 +14,9 @@ use crate::components::Part;
 use crate::contour;
 use crate::crest::{self, core_sheets};
 use crate::distance;
-use crate::error::{check_count, zeros, Result};
+use crate::error::{check_count, collected, extend, filled, push, zeros, Result};
 use crate::execution::Execution;
-use crate::extension::extend;
+use crate::extension;
 use crate::grid::{Grid, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
@@ -86,7 +86,7 @@ pub(crate) fn ridge_surface(
         h,
     };
     move_midway(&label, &mut surface, execution)?;
-    turn_outward(&surface.points, &mut surface.triangles);
+    turn_outward(&surface.points, &mut surface.triangles)?;
     execution.stage("Remeshing", 0.65, 0.94, 1)?;
     let wanted = match edge_length {
         0.0 => EDGE_LENGTH,
@@ -98,11 +98,7 @@ pub(crate) fn ridge_surface(
         surface.source[corner as usize]
     };
     let mut found = Surface {
-        source: remeshed
-            .origin
-            .iter()
-            .map(|o| part_of(o.triangle))
-            .collect(),
+        source: collected(remeshed.origin.iter().map(|o| part_of(o.triangle)))?,
         points: remeshed.points,
         triangles: remeshed.triangles,
     };
@@ -111,7 +107,7 @@ pub(crate) fn ridge_surface(
     execution.stage("Flattening terraces", 0.94, 1.0, passes)?;
     drop_degenerate(&mut found, in_mesh(grid), execution)?;
     let mut found = found.compact()?;
-    let fans = Fans::new(&found.triangles, found.points.len());
+    let fans = Fans::new(&found.triangles, found.points.len())?;
     let passband = PASSBAND / h.iter().copied().fold(1.0, f64::max);
     flatten(&mut found, &fans, (wanted, passband), execution)?;
     let component = |part: u32| parts[part as usize].component;
@@ -119,7 +115,7 @@ pub(crate) fn ridge_surface(
     keep_within(grid, &mut found.points);
     let fans = if drop_degenerate(&mut found, in_mesh(grid), execution)? {
         found = found.compact()?;
-        Fans::new(&found.triangles, found.points.len())
+        Fans::new(&found.triangles, found.points.len())?
     } else {
         fans
     };
@@ -145,7 +141,7 @@ fn flatten(
         room: f64::INFINITY,
         ..LineOfPoint::default()
     };
-    let points = vec![point; surface.points.len()];
+    let points = filled(point, surface.points.len())?;
     let normals = normals(&surface.points, &surface.triangles, fans, execution)?;
     flatten_terraces(
         &mut surface.points,
@@ -194,7 +190,7 @@ fn find_sheets(
         0.28,
         bending::PASSES + 1 + usize::from(RINGS),
     )?;
-    extend(batch, distance, RINGS, farthest, h, &mut sheets, execution)?;
+    extension::extend(batch, distance, RINGS, farthest, h, &mut sheets, execution)?;
     execution.stage("Settling sheets", 0.28, 0.37, SETTLINGS)?;
     settle(batch, &mut sheets, SETTLINGS, h, execution)?;
     Ok(sheets)
@@ -212,14 +208,13 @@ fn cut_surface(
     let passes = contour::PASSES + manifold::PASSES;
     execution.stage("Joining sheets", 0.37, 0.45, passes)?;
     let mut surface = contour::contour(batch, &sheets, h, execution)?;
-    check_count("triangles", surface.triangles.len(), 3)?;
     make_manifold(&mut surface, execution)?;
     execution.stage("Trimming at rims", 0.45, 0.49, 2 + rim::PASSES)?;
     let fraction = sheet_fraction(batch, &sheets, distance, h, execution)?;
     drop(sheets);
     let at_points = values(batch, &surface, &fraction, h, execution)?;
-    trim(&mut surface, &at_points, execution)?;
-    drop_scraps(&mut surface, |_| true);
+    trim(&mut surface, &at_points)?;
+    drop_scraps(&mut surface, |_| true)?;
     weld(&mut surface, execution)?;
     execution.pass_done()?;
     Ok((surface.compact()?, fraction))
@@ -284,15 +279,14 @@ fn append(
         // Outward stays outward in a mirror only if the corners change places.
         let triangle = if mirrored { [a, c, b] } else { [a, b, c] };
         let part = &batch.parts[found.source[triangle[0] as usize] as usize];
-        mesh.triangles.push(triangle.map(|p| first + p));
-        mesh.labels.push(part.label);
-        mesh.components.push(part.component);
+        push(&mut mesh.triangles, triangle.map(|p| first + p))?;
+        push(&mut mesh.labels, part.label)?;
+        push(&mut mesh.components, part.component)?;
     }
     let to_world = |p: &Vec3| grid.world(std::array::from_fn(|a| p[a] / h[a]));
     let points = found.points.iter().map(to_world);
-    mesh.points.extend(points.map(|p| p.map(|v| v as f32)));
+    extend(&mut mesh.points, points.map(|p| p.map(|v| v as f32)))?;
     let directions = normals.iter().map(|n| grid.direction_of(*n));
-    mesh.normals.extend(directions.map(|n| n.map(|v| v as f32)));
-    mesh.thickness.append(&mut thickness);
-    Ok(())
+    extend(&mut mesh.normals, directions.map(|n| n.map(|v| v as f32)))?;
+    extend(&mut mesh.thickness, thickness)
 }

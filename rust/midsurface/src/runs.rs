@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::error::{Error, Result};
+use crate::error::{collected, extend, push, Error, Result};
 use crate::execution::Execution;
 use crate::volume::{Label, Scalars, Volume};
 
@@ -45,16 +45,14 @@ impl Slice {
     fn add(&mut self, label: i64, [z, y]: [usize; 2], x: [usize; 2], keep: bool) -> Result<()> {
         self.run_count += 1;
         if keep {
-            self.runs
-                .try_reserve(1)
-                .map_err(|_| Error::OutOfMemory(std::mem::size_of::<Run>()))?;
-            self.runs.push(Run {
+            let run = Run {
                 label,
                 z: z as u32,
                 y: y as u32,
                 start: x[0] as u32,
                 end: x[1] as u32,
-            });
+            };
+            push(&mut self.runs, run)?;
         }
         Ok(())
     }
@@ -92,7 +90,7 @@ pub(crate) fn scan(
     execution: &mut Execution,
     wanted: impl Fn(i64) -> bool + Sync,
 ) -> Result<Scan> {
-    let slices: Vec<usize> = (0..volume.grid.dimensions[2]).collect();
+    let slices = collected(0..volume.grid.dimensions[2])?;
     let mut scan = Scan::default();
     execution.stream(
         &slices,
@@ -102,12 +100,7 @@ pub(crate) fn scan(
             scan.labels.extend(&slice.labels);
             scan.run_count += slice.run_count;
             scan.check(whole)?;
-            let bytes = slice.runs.len() * std::mem::size_of::<Run>();
-            scan.runs
-                .try_reserve(slice.runs.len())
-                .map_err(|_| Error::OutOfMemory(bytes))?;
-            scan.runs.extend(slice.runs);
-            Ok(())
+            extend(&mut scan.runs, slice.runs)
         },
     )?;
     Ok(scan)

@@ -9,7 +9,7 @@
 //! Only rims are looked at, in the cells of a grid, so that it costs little where nothing touches.
 
 use crate::buckets::Buckets;
-use crate::error::{reserved, zeros, Result};
+use crate::error::{collected, extend, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, floor, sub, Vec3};
 use crate::halfedge::{Fans, NONE};
@@ -47,8 +47,7 @@ pub(crate) fn remove_self_intersections(
 ) -> Result<Fans> {
     for cut in 1..=CUTS {
         let on_rim = on_rim(surface, &fans, execution)?;
-        let mut all: Vec<u32> = reserved(surface.triangles.len())?;
-        all.extend(0..surface.triangles.len() as u32);
+        let all = collected(0..surface.triangles.len() as u32)?;
         let touching = touching(surface, &on_rim, &all, component, execution)?;
         if touching.is_empty() {
             break;
@@ -61,7 +60,7 @@ pub(crate) fn remove_self_intersections(
         }
         let all = cut == CUTS;
         cut_away(surface, (&fans, &on_rim), &left, all, execution)?;
-        fans = Fans::new(&surface.triangles, surface.points.len());
+        fans = Fans::new(&surface.triangles, surface.points.len())?;
     }
     Ok(fans)
 }
@@ -90,8 +89,7 @@ fn touching(
             .iter()
             .any(|&p| on_rim[p as usize])
     };
-    let mut at_rim: Vec<u32> = reserved(among.len())?;
-    at_rim.extend(among.iter().filter(|&&t| is_at_rim(t)));
+    let at_rim = collected(among.iter().copied().filter(|&t| is_at_rim(t)))?;
     if at_rim.is_empty() {
         return Ok(Vec::new());
     }
@@ -104,7 +102,7 @@ fn touching(
         };
         at_rim.iter().flat_map(of)
     };
-    let in_cell = Buckets::new(cells.count(), entries);
+    let in_cell = Buckets::new(cells.count(), entries)?;
     let touches = |t: u32, rim: u32| {
         let (own, other) = (bounds(surface, t), bounds(surface, rim));
         let [a, b] = [t, rim].map(|t| surface.triangles[t as usize]);
@@ -117,24 +115,22 @@ fn touching(
             && is_same(a[0], b[0])
             && touch(a, b, &surface.points)
     };
-    let pieces: Vec<&[u32]> = among.chunks(PIECE).collect();
+    let pieces = collected(among.chunks(PIECE))?;
     let mut pairs = Vec::new();
     execution.stream(
         &pieces,
         |piece| {
-            let mut found = Vec::new();
+            let mut found: Vec<[u32; 2]> = Vec::new();
             for &t in *piece {
                 for cell in cells.reached_by(bounds(surface, t)) {
                     let rims = in_cell.of(cell as usize).iter();
-                    found.extend(rims.filter(|&&rim| touches(t, rim)).map(|&rim| [t, rim]));
+                    let rims = rims.filter(|&&rim| touches(t, rim));
+                    extend(&mut found, rims.map(|&rim| [t, rim]))?;
                 }
             }
-            found
+            Ok(found)
         },
-        |found| {
-            pairs.extend(found);
-            Ok(())
-        },
+        |found: Result<_>| extend(&mut pairs, found?),
     )?;
     // Two triangles may meet in several cells.
     pairs.sort_unstable();
@@ -155,7 +151,7 @@ fn near(surface: &Surface, touching: &[[u32; 2]], reach: f64) -> Result<Vec<u32>
         let of = |&t: &u32| cells.reached_by(wider(t)).map(move |cell| (cell, t));
         touching.iter().flat_map(of)
     };
-    let in_cell = Buckets::new(cells.count(), entries);
+    let in_cell = Buckets::new(cells.count(), entries)?;
     let is_near = |&t: &u32| {
         let own = bounds(surface, t);
         let mut around = cells
@@ -164,7 +160,7 @@ fn near(surface: &Surface, touching: &[[u32; 2]], reach: f64) -> Result<Vec<u32>
         around.any(|&other| overlap(own, wider(other)))
     };
     let all = 0..surface.triangles.len() as u32;
-    Ok(all.filter(is_near).collect())
+    collected(all.filter(is_near))
 }
 
 /// Draws the rims of pairs that touch back; returns the pairs that touch in the end.
@@ -179,7 +175,7 @@ fn draw_back(
     for _ in 0..STEPS {
         let corners = touching.as_flattened().iter();
         let corners = corners.flat_map(|&t| surface.triangles[t as usize]);
-        let mut rims: Vec<u32> = corners.filter(|&p| on_rim[p as usize]).collect();
+        let mut rims = collected(corners.filter(|&p| on_rim[p as usize]))?;
         rims.sort_unstable();
         rims.dedup();
         for p in rims {
@@ -241,7 +237,7 @@ fn cut_away(
     let mut goes = goes.into_iter();
     surface.triangles.retain(|_| goes.next() == Some(false));
     make_manifold(surface, execution)?;
-    drop_scraps(surface, |part| is_cut[part]);
+    drop_scraps(surface, |part| is_cut[part])?;
     *surface = std::mem::take(surface).compact()?;
     Ok(())
 }
@@ -349,7 +345,7 @@ mod tests {
 
     fn uncrossed(mut surface: Surface, threads: usize) -> Surface {
         let mut quiet = Quiet::default();
-        let fans = Fans::new(&surface.triangles, surface.points.len());
+        let fans = Fans::new(&surface.triangles, surface.points.len()).unwrap();
         let mut execution = Execution::new(threads, &mut quiet).unwrap();
         remove_self_intersections(&mut surface, fans, &|source| source, 1.0, &mut execution)
             .unwrap();

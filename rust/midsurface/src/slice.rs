@@ -2,6 +2,7 @@
 
 use crate::bricks::{Directory, EDGE, LAYER};
 use crate::components::{touching, DisjointSets};
+use crate::error::{collected, filled, push, zeros, Result};
 use crate::grid::{along, dot, floor, round, unit, Vec3};
 use crate::interpolation::Sampler;
 use crate::runs::Run;
@@ -37,16 +38,16 @@ pub(crate) struct Slice<'a> {
 
 impl<'a> Slice<'a> {
     /// An empty slice over the bricks of the part at height `z`.
-    pub fn new(fraction: Sampler<'a>, sheets: &'a [Sheet], z: usize) -> Self {
+    pub fn new(fraction: Sampler<'a>, sheets: &'a [Sheet], z: usize) -> Result<Self> {
         let layer = fraction.directory.layer(z / EDGE);
-        Self {
+        Ok(Self {
             z,
             fraction,
             sheets,
             first_brick: layer.start,
-            component: vec![NOWHERE; layer.len() * LAYER],
-            flags: vec![0; layer.len() * LAYER],
-        }
+            component: filled(NOWHERE, layer.len() * LAYER)?,
+            flags: zeros(layer.len() * LAYER)?,
+        })
     }
 
     /// Work spacing.
@@ -123,41 +124,40 @@ impl<'a> Slice<'a> {
     }
 
     /// Finds the slice's components (8 neighbours) and marks their pixels with their numbers.
-    pub fn components(&mut self, runs: &[Run]) -> Vec<Vec<Pixel>> {
-        let mut sets = DisjointSets::new(runs.len());
-        let rows: Vec<std::ops::Range<usize>> = runs
-            .chunk_by(|a, b| a.y == b.y)
-            .scan(0, |end, row| {
-                *end += row.len();
-                Some(*end - row.len()..*end)
-            })
-            .collect();
+    pub fn components(&mut self, runs: &[Run]) -> Result<Vec<Vec<Pixel>>> {
+        let mut sets = DisjointSets::new(runs.len())?;
+        let rows = runs.chunk_by(|a, b| a.y == b.y).scan(0, |end, row| {
+            *end += row.len();
+            Some(*end - row.len()..*end)
+        });
+        let rows = collected(rows)?;
         for pair in rows
             .windows(2)
             .filter(|w| runs[w[0].start].y + 1 == runs[w[1].start].y)
         {
             touching(runs, pair[1].clone(), pair[0].clone(), |a, b, _| {
-                sets.join(a, b)
-            });
+                sets.join(a, b);
+                Ok(())
+            })?;
         }
-        let mut number = vec![NOWHERE; runs.len()];
+        let mut number = filled(NOWHERE, runs.len())?;
         let mut components: Vec<Vec<Pixel>> = Vec::new();
         for (i, run) in runs.iter().enumerate() {
             let root = sets.find(i);
             if number[root] == NOWHERE {
                 number[root] = components.len() as u32;
-                components.push(Vec::new());
+                push(&mut components, Vec::new())?;
             }
             let component = number[root];
             for x in run.start as usize..run.end as usize {
                 let y = run.y as usize;
-                components[component as usize].push([x, y]);
+                push(&mut components[component as usize], [x, y])?;
                 if let Some(entry) = self.entry(x as isize, y as isize) {
                     self.component[entry] = component;
                 }
             }
         }
-        components
+        Ok(components)
     }
 
     /// The component of a pixel.
@@ -278,7 +278,7 @@ impl<'a> Slice<'a> {
     }
 
     /// The connected regions (8 neighbours) of the pixels that are not covered.
-    pub fn uncovered(&mut self, pixels: &[Pixel]) -> Vec<Vec<Pixel>> {
+    pub fn uncovered(&mut self, pixels: &[Pixel]) -> Result<Vec<Vec<Pixel>>> {
         let mut regions = Vec::new();
         let open = |slice: &Self, [x, y]: [isize; 2], component| {
             let entry = slice.entry(x, y)?;
@@ -305,15 +305,15 @@ impl<'a> Slice<'a> {
                     let p = [x + dx, y + dy];
                     if let Some(entry) = open(self, p, component) {
                         self.flags[entry] |= QUEUED;
-                        region.push(p.map(|v| v as usize));
+                        push(&mut region, p.map(|v| v as usize))?;
                     }
                 }
             }
-            regions.push(region);
+            push(&mut regions, region)?;
         }
         for &pixel in regions.iter().flatten() {
             self.clear(pixel.map(|v| v as isize), QUEUED);
         }
-        regions
+        Ok(regions)
     }
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::eigen::{eigenvalues, eigenvector, Symmetric};
-use crate::error::{Error, Result};
+use crate::error::{collected, push, Error, Result};
 use crate::grid::{along, dot, length, sub, unit, Vec3};
 use crate::polylines::{Polyline, Polylines};
 
@@ -52,11 +52,8 @@ impl Polylines {
         if let Some(i) = self.lines.iter().position(|line| !inside(line)) {
             return fail(format!("line {i} names points that are not there"));
         }
-        let mut ranges: Vec<_> = self
-            .lines
-            .iter()
-            .map(|l| (l.first, l.first + l.count))
-            .collect();
+        let ranges = self.lines.iter().map(|l| (l.first, l.first + l.count));
+        let mut ranges = collected(ranges)?;
         ranges.sort_unstable();
         if ranges
             .windows(2)
@@ -68,12 +65,16 @@ impl Polylines {
     }
 
     /// The lines ordered by slice, one group a slice.
-    fn by_slice(&self) -> Vec<Vec<usize>> {
-        let mut order: Vec<usize> = (0..self.lines.len()).collect();
-        order.retain(|&i| self.lines[i].count > 0);
-        order.sort_by_key(|&i| self.lines[i].slice);
+    fn by_slice(&self) -> Result<Vec<Vec<usize>>> {
+        let lines = (0..self.lines.len()).filter(|&i| self.lines[i].count > 0);
+        let mut order = collected(lines)?;
+        order.sort_unstable_by_key(|&i| (self.lines[i].slice, i));
         let same = |a: &usize, b: &usize| self.lines[*a].slice == self.lines[*b].slice;
-        order.chunk_by(same).map(<[usize]>::to_vec).collect()
+        let mut groups = Vec::new();
+        for group in order.chunk_by(same) {
+            push(&mut groups, collected(group.iter().copied())?)?;
+        }
+        Ok(groups)
     }
 
     fn points_of(&self, line: usize) -> &[Vec3] {
@@ -82,19 +83,13 @@ impl Polylines {
     }
 
     fn check_planes(&self) -> Result<()> {
-        let groups = self.by_slice();
+        let groups = self.by_slice()?;
         if groups.len() < 2 {
             return Ok(());
         }
         let tolerance = OFF_PLANE * self.mean_edge(0..self.lines.len());
-        let points = |group: &[usize]| -> Vec<Vec3> {
-            group
-                .iter()
-                .flat_map(|&line| self.points_of(line))
-                .copied()
-                .collect()
-        };
-        let centres: Vec<Vec3> = groups.iter().map(|group| mean(&points(group))).collect();
+        let centre = |group: &Vec<usize>| mean(group.iter().flat_map(|&l| self.points_of(l)));
+        let centres = collected(groups.iter().map(centre))?;
         let normal = self.slice_normal(&groups, &centres);
         for (group, centre) in groups.iter().zip(&centres) {
             for &line in group {
@@ -108,10 +103,8 @@ impl Polylines {
                 }
             }
         }
-        let heights: Vec<f64> = centres
-            .iter()
-            .map(|c| dot(sub(*c, centres[0]), normal))
-            .collect();
+        let heights = centres.iter().map(|c| dot(sub(*c, centres[0]), normal));
+        let heights = collected(heights)?;
         let rising = heights.windows(2).all(|w| w[1] - w[0] > tolerance);
         let falling = heights.windows(2).all(|w| w[0] - w[1] > tolerance);
         if rising || falling {
@@ -161,7 +154,7 @@ impl Polylines {
     }
 
     /// The lines without points that repeat the one before.
-    pub(crate) fn without_repeats(&self) -> Cow<'_, Self> {
+    pub(crate) fn without_repeats(&self) -> Result<Cow<'_, Self>> {
         let tolerance = COINCIDENT * self.mean_edge(0..self.lines.len());
         let near = |a: Vec3, b: Vec3| length(sub(a, b)) <= tolerance;
         let repeats = |line: usize| {
@@ -172,17 +165,17 @@ impl Polylines {
                 || (closes && near(points[0], points[points.len() - 1]))
         };
         if !(0..self.lines.len()).any(repeats) {
-            return Cow::Borrowed(self);
+            return Ok(Cow::Borrowed(self));
         }
         let mut clean = Self::default();
         for (i, line) in self.lines.iter().enumerate() {
             let first = clean.points.len();
             for (k, &p) in self.points_of(i).iter().enumerate() {
                 if clean.points.len() == first || !near(clean.points[clean.points.len() - 1], p) {
-                    clean.points.push(p);
-                    clean.thickness.push(self.thickness[line.first + k]);
+                    push(&mut clean.points, p)?;
+                    push(&mut clean.thickness, self.thickness[line.first + k])?;
                     let distance = self.border_distance[line.first + k];
-                    clean.border_distance.push(distance);
+                    push(&mut clean.border_distance, distance)?;
                 }
             }
             let repeats_first = |points: &[Vec3]| near(points[first], points[points.len() - 1]);
@@ -193,18 +186,20 @@ impl Polylines {
             }
             let count = clean.points.len() - first;
             let closed = line.closed && count >= 3;
-            clean.lines.push(Polyline {
+            let line = Polyline {
                 first,
                 count,
                 closed,
                 ..line.clone()
-            });
+            };
+            push(&mut clean.lines, line)?;
         }
-        Cow::Owned(clean)
+        Ok(Cow::Owned(clean))
     }
 }
 
-fn mean(points: &[Vec3]) -> Vec3 {
-    let sum = points.iter().fold([0.0; 3], |sum, p| along(sum, 1.0, *p));
-    sum.map(|v| v / points.len() as f64)
+fn mean<'a>(points: impl Iterator<Item = &'a Vec3>) -> Vec3 {
+    let add = |(sum, count), p: &Vec3| (along(sum, 1.0, *p), count + 1.0);
+    let (sum, count) = points.fold(([0.0; 3], 0.0), add);
+    sum.map(|v| v / count)
 }

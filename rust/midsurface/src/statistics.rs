@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::error::{reserved, zeros, Error, Result};
+use crate::error::{collected, extend, push, reserve, reserved, zeros, Error, Result};
 use crate::exchange::{Exchange, Team};
 use crate::grid::{length, sub, Vec3};
 use crate::halfedge::Edges;
@@ -122,6 +122,7 @@ fn measure_in_team(mesh: &TriangleMesh, team: &mut Team) -> Result<Vec<Statistic
     for message in &of_all {
         let mut rest = message.as_slice();
         while let Some(row) = Row::unpack(&mut rest) {
+            let row = row?;
             let key = row.scope.place();
             let is_whole = matches!(row.scope, Scope::Component { .. });
             holders += usize::from(row.scope == Scope::Total && row.triangles > 0);
@@ -147,22 +148,22 @@ fn spread() -> Error {
 
 fn measure(mesh: &TriangleMesh) -> Result<Vec<Row>> {
     check(mesh)?;
-    let mut order = reserved(mesh.triangles.len())?;
-    order.extend(0..mesh.triangles.len() as u32);
+    let mut order = collected(0..mesh.triangles.len() as u32)?;
     let label = |t: u32| mesh.labels.map(|l| l[t as usize]);
     let component = |t: u32| mesh.components.map(|c| c[t as usize]);
-    order.sort_by_key(|&t| (label(t), component(t)));
+    order.sort_unstable_by_key(|&t| (label(t), component(t), t));
 
     let mut measure = Measure::new(mesh)?;
     let mut rows = vec![measure.row(Scope::Total, &order)?];
     for of_label in order.chunk_by(|&a, &b| label(a) == label(b)) {
         let label = label(of_label[0]);
         if let Some(label) = label {
-            rows.push(measure.row(Scope::Label(label), of_label)?);
+            push(&mut rows, measure.row(Scope::Label(label), of_label)?)?;
         }
         for triangles in of_label.chunk_by(|&a, &b| component(a) == component(b)) {
             if let Some(component) = component(triangles[0]) {
-                rows.push(measure.row(Scope::Component { label, component }, triangles)?);
+                let scope = Scope::Component { label, component };
+                push(&mut rows, measure.row(scope, triangles)?)?;
             }
         }
     }
@@ -233,12 +234,9 @@ impl<'a> Measure<'a> {
             self.number[p] = 0;
         }
         let point = |p: u32| self.mesh.points[used[p as usize]];
-        let edges = Edges::new(&triangles, used.len());
-        let boundary: Vec<(u32, u32)> = edges
-            .groups()
-            .filter(|(_, _, group)| group.len() == 1)
-            .map(|(a, b, _)| (a, b))
-            .collect();
+        let edges = Edges::new(&triangles, used.len())?;
+        let boundary = edges.groups().filter(|(_, _, group)| group.len() == 1);
+        let boundary = collected(boundary.map(|(a, b, _)| (a, b)))?;
         let corners = triangles.iter().map(|t: &[u32; 3]| t.map(point));
         Ok(Row {
             scope,
@@ -252,7 +250,7 @@ impl<'a> Measure<'a> {
                 .sum(),
             boundary_loops: count_connected(&boundary, used.len())?,
             thickness: self.thickness(&used)?,
-            quality: QualitySums::of(corners, &edges, used.len()),
+            quality: QualitySums::of(corners, &edges, used.len())?,
         })
     }
 
@@ -261,13 +259,8 @@ impl<'a> Measure<'a> {
         let Some(thickness) = self.mesh.thickness else {
             return Ok(Vec::new());
         };
-        let mut known: Vec<f64> = reserved(used.len())?;
-        known.extend(
-            used.iter()
-                .map(|&p| f64::from(thickness[p]))
-                .filter(|t| t.is_finite()),
-        );
-        Ok(known)
+        let known = used.iter().map(|&p| f64::from(thickness[p]));
+        collected(known.filter(|t| t.is_finite()))
     }
 }
 
@@ -285,10 +278,7 @@ struct Row {
 
 impl Row {
     fn add(mut self, other: Self) -> Result<Self> {
-        let bytes = other.thickness.len() * std::mem::size_of::<f64>();
-        let room = self.thickness.try_reserve(other.thickness.len());
-        room.map_err(|_| Error::OutOfMemory(bytes))?;
-        self.thickness.extend(other.thickness);
+        extend(&mut self.thickness, other.thickness)?;
         Ok(Self {
             points: self.points + other.points,
             triangles: self.triangles + other.triangles,
@@ -302,7 +292,7 @@ impl Row {
 
     fn finish(mut self) -> Statistics {
         let known = &mut self.thickness;
-        known.sort_by(f64::total_cmp);
+        known.sort_unstable_by(f64::total_cmp);
         let thickness = (!known.is_empty()).then(|| ThicknessFigures {
             mean: known.iter().sum::<f64>() / known.len() as f64,
             quantiles: QUANTILES.map(|share| quantile(known, share)),
@@ -322,9 +312,7 @@ impl Row {
     /// Appends the row to a message for another process; floats go as their bits.
     fn pack(&self, message: &mut Vec<i64>) -> Result<()> {
         let (kind, label, component) = self.scope.place();
-        let length = 9 + QualitySums::LENGTH + self.thickness.len();
-        let room = message.try_reserve(length);
-        room.map_err(|_| Error::OutOfMemory(length * std::mem::size_of::<i64>()))?;
+        reserve(message, 9 + QualitySums::LENGTH + self.thickness.len())?;
         let counts = [
             self.points,
             self.triangles,
@@ -347,7 +335,7 @@ impl Row {
     }
 
     /// Takes a row from the beginning of a message.
-    fn unpack(message: &mut &[i64]) -> Option<Self> {
+    fn unpack(message: &mut &[i64]) -> Option<Result<Self>> {
         let (head, rest) = message.split_first_chunk::<8>()?;
         let [scope, label, component, points, triangles, loops, known, euler_number] = *head;
         let (floats, rest) = rest.split_first_chunk::<{ 1 + QualitySums::LENGTH }>()?;
@@ -355,7 +343,8 @@ impl Row {
         *message = rest;
         let label = (scope & 1 != 0).then_some(label);
         let floats = floats.map(from_bits);
-        Some(Self {
+        let thickness = collected(thickness.iter().copied().map(from_bits));
+        Some(thickness.map(|thickness| Self {
             scope: match (scope / 4, label, scope & 2 != 0) {
                 (0, _, _) => Scope::Total,
                 (_, Some(label), false) => Scope::Label(label),
@@ -366,9 +355,9 @@ impl Row {
             euler_number,
             boundary_length: floats[0],
             boundary_loops: loops as usize,
-            thickness: thickness.iter().copied().map(from_bits).collect(),
+            thickness,
             quality: QualitySums::from(std::array::from_fn(|i| floats[1 + i])),
-        })
+        }))
     }
 }
 
@@ -391,8 +380,7 @@ fn quantile(ascending: &[f64], share: f64) -> f64 {
 
 /// Number of connected parts of a graph, among its points that have an edge.
 fn count_connected(edges: &[(u32, u32)], points: usize) -> Result<usize> {
-    let mut parent: Vec<u32> = reserved(points)?;
-    parent.extend(0..points as u32);
+    let mut parent = collected(0..points as u32)?;
     let mut touched: Vec<bool> = zeros(points)?;
     let mut joins = 0;
     for &(a, b) in edges {

@@ -10,7 +10,7 @@
 //! terraces, too, but takes the bends of real membranes for such.
 
 use crate::buckets::{self, Buckets};
-use crate::error::{zeros, Result};
+use crate::error::{collected, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, length, sub, unit, Vec3};
 use crate::halfedge::{self, ends, previous, Fans, NONE};
@@ -76,7 +76,7 @@ pub(crate) fn flatten_terraces(
         &sinc_weights(passband),
         execution,
     )?;
-    let rings = neighbours.rings(lines);
+    let rings = neighbours.rings(lines)?;
     for (i, point) in points.iter_mut().enumerate() {
         let way = if neighbours.boundary[i] {
             within_slice(normals[i], lines[i].across)
@@ -126,7 +126,13 @@ fn moves(
         weights,
         execution,
     )?;
-    let given_back = low_pass(moves.clone(), None, neighbours, weights, execution)?;
+    let given_back = low_pass(
+        collected(moves.iter().copied())?,
+        None,
+        neighbours,
+        weights,
+        execution,
+    )?;
     for (shift, back) in moves.iter_mut().zip(given_back) {
         *shift -= back;
     }
@@ -154,7 +160,7 @@ fn low_pass(
         }
     })?;
     let start = |(a, b): (&f64, &f64)| weights[0] * a + weights[1] * b;
-    let mut sum: Vec<f64> = before.iter().zip(&now).map(start).collect();
+    let mut sum = collected(before.iter().zip(&now).map(start))?;
     for &weight in &weights[2..] {
         execution.fill(&mut before, PIECE, |piece, out| {
             for (i, out) in out.iter_mut().enumerate() {
@@ -251,7 +257,7 @@ impl Neighbours {
 
     /// Normals averaged over some rings, in which terraces do not show.
     fn smooth_normals(&self, normals: &[Vec3], execution: &mut Execution) -> Result<Vec<Vec3>> {
-        let mut smooth = normals.to_vec();
+        let mut smooth = collected(normals.iter().copied())?;
         let mut next: Vec<Vec3> = zeros(normals.len())?;
         for _ in 0..SMOOTH_NORMALS {
             execution.fill(&mut next, PIECE, |piece, out| {
@@ -269,11 +275,9 @@ impl Neighbours {
     }
 
     /// Rings of points between each point and one that stays, at most [`RINGS`].
-    fn rings(&self, lines: &[LineOfPoint]) -> Vec<u8> {
+    fn rings(&self, lines: &[LineOfPoint]) -> Result<Vec<u8>> {
         let stays = |p: usize| self.boundary[p] && lines[p].across == [0.0; 3];
-        let mut rings: Vec<u8> = (0..lines.len())
-            .map(|p| if stays(p) { 0 } else { RINGS })
-            .collect();
+        let mut rings = collected((0..lines.len()).map(|p| if stays(p) { 0 } else { RINGS }))?;
         for ring in 1..RINGS {
             for p in 0..rings.len() {
                 if rings[p] > ring && self.of(p).any(|(q, _)| rings[q] == ring - 1) {
@@ -281,6 +285,6 @@ impl Neighbours {
                 }
             }
         }
-        rings
+        Ok(rings)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::error::{push, Error, Result};
+use crate::error::{collected, push, Error, Result};
 use crate::exchange::Team;
 use crate::grid::Grid;
 use crate::runs::Run;
@@ -119,7 +119,7 @@ impl Territory {
         let earlier = self.extents[..self.own].iter();
         let mut earlier: Vec<&Extent> = earlier.filter(|e| e.overlaps(&own)).collect();
         if earlier.is_empty() {
-            return Ok(runs.collect());
+            return collected(runs);
         }
         earlier.sort_unstable_by_key(|e| e.from[0]);
         let mut clipped = Vec::new();

@@ -7,9 +7,8 @@
 //! fraction rises far enough (hysteresis, as in Canny 1986).
 
 use crate::components::DisjointSets;
-use crate::error::{reserved, zeros, Result};
-use crate::execution::Execution;
-use crate::grid::{along, sub, Vec3};
+use crate::error::{collected, filled, push, reserved, zeros, Result};
+use crate::grid::{along, sub};
 use crate::halfedge::{ends, Edges};
 use crate::manifold::{split_points_among, Surface};
 
@@ -32,8 +31,8 @@ enum Side {
 }
 
 /// Cuts `surface` where `fraction`, given at its points, is ½.
-pub(crate) fn trim(surface: &mut Surface, fraction: &[f64], execution: &Execution) -> Result<()> {
-    let above = above(surface, fraction);
+pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
+    let above = above(surface, fraction)?;
     if above.iter().all(|&a| a) {
         return Ok(());
     }
@@ -41,14 +40,10 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64], execution: &Executio
     // Only these are cut; those with the same edges are among them.
     let mixed = |t: &[u32; 3]| t.iter().any(|&p| above[p as usize] != above[t[0] as usize]);
     let numbers = 0..triangles.len() as u32;
-    let mixed: Vec<u32> = numbers.filter(|&t| mixed(&triangles[t as usize])).collect();
-    let edges = Edges::of_triangles(&triangles, &mixed, surface.points.len());
-    let mut side: Vec<Side> = reserved(above.len())?;
-    side.extend(
-        above
-            .iter()
-            .map(|a| if *a { Side::Kept } else { Side::Cut }),
-    );
+    let mixed = collected(numbers.filter(|&t| mixed(&triangles[t as usize])))?;
+    let edges = Edges::of_triangles(&triangles, &mixed, surface.points.len())?;
+    let side = |a: &bool| if *a { Side::Kept } else { Side::Cut };
+    let mut side = collected(above.iter().map(side))?;
     snap(surface, fraction, &edges, &mut side)?;
     let mut cut: Vec<u32> = zeros(3 * triangles.len())?;
     for (a, b, group) in edges.groups() {
@@ -60,8 +55,9 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64], execution: &Executio
             let new = surface.points.len() as u32;
             let (from, to) = (surface.points[p], surface.points[q]);
             let t = crossing(fraction[p], fraction[q]);
-            surface.points.push(along(from, t, sub(to, from)));
-            surface.source.push(surface.source[p]);
+            push(&mut surface.points, along(from, t, sub(to, from)))?;
+            let source = surface.source[p];
+            push(&mut surface.source, source)?;
             for &(_, half_edge) in group {
                 cut[half_edge as usize] = new;
             }
@@ -82,15 +78,14 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64], execution: &Executio
         }
     }
     // Where two cuts met in a point.
-    let mut at_cut = vec![true; surface.points.len()];
+    let mut at_cut = filled(true, surface.points.len())?;
     at_cut[..above.len()].fill(false);
     for &t in &mixed {
         for p in triangles[t as usize] {
             at_cut[p as usize] = true;
         }
     }
-    split_points_among(surface, &at_cut, execution);
-    Ok(())
+    split_points_among(surface, &at_cut)
 }
 
 /// Where between two points the fraction is that of a rim; next to the first one's end where
@@ -117,7 +112,7 @@ fn snap(surface: &mut Surface, fraction: &[f64], edges: &Edges, side: &mut [Side
             }
         }
     }
-    let before: Vec<Vec3> = surface.points.clone();
+    let before = collected(surface.points.iter().copied())?;
     for (p, (share, other)) in nearest.into_iter().enumerate() {
         if share > 0.0 {
             let way = sub(before[other as usize], before[p]);
@@ -129,11 +124,11 @@ fn snap(surface: &mut Surface, fraction: &[f64], edges: &Edges, side: &mut [Side
 }
 
 /// Whether each point stays.
-fn above(surface: &Surface, fraction: &[f64]) -> Vec<bool> {
-    let mut above: Vec<bool> = fraction.iter().map(|f| *f >= RIM).collect();
+fn above(surface: &Surface, fraction: &[f64]) -> Result<Vec<bool>> {
+    let mut above = collected(fraction.iter().map(|f| *f >= RIM))?;
     let certain = |f: &f64| *f >= SHEET || *f <= HOLE;
-    let mut certain: Vec<bool> = fraction.iter().map(certain).collect();
-    let mut regions = DisjointSets::new(above.len());
+    let mut certain = collected(fraction.iter().map(certain))?;
+    let mut regions = DisjointSets::new(above.len())?;
     for &[a, b, c] in &surface.triangles {
         for [p, q] in [[a, b], [b, c], [a, c]].map(|edge| edge.map(|p| p as usize)) {
             // Whatever is certain need not be told so by its neighbours.
@@ -148,7 +143,7 @@ fn above(surface: &Surface, fraction: &[f64]) -> Vec<bool> {
     for p in 0..above.len() {
         above[p] ^= !certain[regions.find(p)];
     }
-    above
+    Ok(above)
 }
 
 /// Appends what is left of the triangle with this first half-edge.

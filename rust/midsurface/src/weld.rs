@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use crate::error::{reserved, zeros, Result};
+use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, cross, dot, length, squared_distance, sub, Vec3};
 use crate::halfedge::{ends, next, triangles_at, Fans, NONE};
@@ -23,16 +23,15 @@ const TURNED: f64 = 0.3;
 /// Draws the short edges of a consistently wound 2-manifold together.
 pub(crate) fn weld(surface: &mut Surface, execution: &mut Execution) -> Result<()> {
     for _ in 0..ROUNDS {
-        let short = execution.in_pool(|| short_edges(surface));
+        let short = short_edges(surface, execution)?;
         if short.is_empty() {
             break;
         }
-        let pairs = pairs(surface, &fans_near(surface, &short, execution)?, short)?;
+        let pairs = pairs(surface, &fans_near(surface, &short)?, short)?;
         if pairs.is_empty() {
             break;
         }
-        let mut into: Vec<u32> = reserved(surface.points.len())?;
-        into.extend(0..surface.points.len() as u32);
+        let mut into = collected(0..surface.points.len() as u32)?;
         for (from, to, place) in pairs {
             into[from as usize] = to;
             surface.points[to as usize] = place;
@@ -48,37 +47,39 @@ pub(crate) fn weld(surface: &mut Surface, execution: &mut Execution) -> Result<(
 }
 
 /// The half-edges of short edges, the shortest first.
-fn short_edges(surface: &Surface) -> Vec<u32> {
+fn short_edges(surface: &Surface, execution: &Execution) -> Result<Vec<u32>> {
     let squared = |e: u32| {
         let (a, b) = ends(&surface.triangles, e);
         squared_distance(surface.points[a as usize], surface.points[b as usize])
     };
-    let all = (0..3 * surface.triangles.len() as u32).into_par_iter();
-    let mut short: Vec<(f64, u32)> = all
-        .map(|e| (squared(e), e))
-        .filter(|(d, _)| *d < SHORT * SHORT)
-        .collect();
-    short.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    short.into_iter().map(|(_, e)| e).collect()
+    let mut is_short: Vec<bool> = zeros(3 * surface.triangles.len())?;
+    execution.in_pool(|| {
+        let all = is_short.par_iter_mut().enumerate();
+        all.for_each(|(e, is_short)| *is_short = squared(e as u32) < SHORT * SHORT);
+    });
+    let all = 0..is_short.len() as u32;
+    let mut short = collected(all.filter(|&e| is_short[e as usize]))?;
+    short.sort_unstable_by(|&a, &b| squared(a).total_cmp(&squared(b)).then(a.cmp(&b)));
+    Ok(short)
 }
 
 /// The fans of the ends of short edges, which are few, and of the points next to them; other points
 /// have none.
-fn fans_near(surface: &Surface, short: &[u32], execution: &Execution) -> Result<Fans> {
+fn fans_near(surface: &Surface, short: &[u32]) -> Result<Fans> {
     let triangles = &surface.triangles;
     let mut is_end: Vec<bool> = zeros(surface.points.len())?;
     for &e in short {
         let (a, b) = ends(triangles, e);
         (is_end[a as usize], is_end[b as usize]) = (true, true);
     }
-    let mut near = is_end.clone();
-    for t in triangles_at(triangles, &is_end, execution) {
+    let mut near = collected(is_end.iter().copied())?;
+    for t in triangles_at(triangles, &is_end)? {
         for p in triangles[t as usize] {
             near[p as usize] = true;
         }
     }
-    let around = triangles_at(triangles, &near, execution);
-    Ok(Fans::of_points(triangles, &around, &near))
+    let around = triangles_at(triangles, &near)?;
+    Fans::of_points(triangles, &around, &near)
 }
 
 /// Points to be drawn into others and where to, none of them near another's triangles.
@@ -104,7 +105,7 @@ fn pairs(surface: &Surface, fans: &Fans, short: Vec<u32>) -> Result<Vec<(u32, u3
         };
         if keeps_shape(surface, fans, [from, to], place) {
             around().for_each(|p| taken[p as usize] = true);
-            pairs.push((from, to, place));
+            push(&mut pairs, (from, to, place))?;
         }
     }
     Ok(pairs)

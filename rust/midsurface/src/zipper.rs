@@ -12,7 +12,7 @@
 use rstar::primitives::GeomWithData;
 use rstar::RTree;
 
-use crate::error::{Error, Result};
+use crate::error::{collected, extend, push, reserved, zeros, Error, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, length, squared_distance, sub, Vec3};
 use crate::polylines::{Polyline, Polylines};
@@ -61,32 +61,32 @@ pub(crate) fn zip(polylines: &Polylines, execution: &mut Execution) -> Result<Ve
             polylines.points.len()
         )));
     }
-    let mut order: Vec<u32> = (0..polylines.lines.len() as u32).collect();
+    let mut order = collected(0..polylines.lines.len() as u32)?;
     let key = |i: &u32| {
         let line = &polylines.lines[*i as usize];
         (line.label, line.component, line.slice)
     };
-    order.sort_by_key(key);
-    let groups: Vec<&[u32]> = order.chunk_by(|a, b| key(a) == key(b)).collect();
-    let neighbours: Vec<usize> = (1..groups.len())
-        .filter(|&i| {
-            let (a, b) = (key(&groups[i - 1][0]), key(&groups[i][0]));
-            (a.0, a.1) == (b.0, b.1) && a.2.checked_add(1) == Some(b.2)
-        })
-        .collect();
-    let slices = execution.collect(groups.len(), |i| SliceEdges::new(polylines, groups[i]))?;
+    order.sort_unstable_by_key(|i| (key(i), *i));
+    let groups = collected(order.chunk_by(|a, b| key(a) == key(b)))?;
+    let are_neighbours = |&i: &usize| {
+        let (a, b) = (key(&groups[i - 1][0]), key(&groups[i][0]));
+        (a.0, a.1) == (b.0, b.1) && a.2.checked_add(1) == Some(b.2)
+    };
+    let neighbours = collected((1..groups.len()).filter(are_neighbours))?;
+    let mut slices = reserved(groups.len())?;
+    execution.stream(
+        &groups,
+        |group| SliceEdges::new(polylines, group),
+        |edges| {
+            slices.push(edges?);
+            Ok(())
+        },
+    )?;
     let mut triangles = Vec::new();
     execution.stream(
         &neighbours,
         |&i| zip_slices(&slices[i - 1], &slices[i]),
-        |found: Vec<Zipped>| {
-            let bytes = found.len() * std::mem::size_of::<Zipped>();
-            triangles
-                .try_reserve(found.len())
-                .map_err(|_| Error::OutOfMemory(bytes))?;
-            triangles.extend(found);
-            Ok(())
-        },
+        |found: Result<Vec<Zipped>>| extend(&mut triangles, found?),
     )?;
     Ok(triangles)
 }
@@ -112,7 +112,7 @@ fn edge_count(line: &Polyline) -> usize {
 }
 
 impl<'a> SliceEdges<'a> {
-    fn new(polylines: &'a Polylines, lines: &[u32]) -> Self {
+    fn new(polylines: &'a Polylines, lines: &[u32]) -> Result<Self> {
         let mut edges = Vec::new();
         for &number in lines {
             let line = &polylines.lines[number as usize];
@@ -120,23 +120,24 @@ impl<'a> SliceEdges<'a> {
                 let [p, q] = [at, at + 1].map(|i| point(line, i as i64) as usize);
                 let (a, b) = (polylines.points[p], polylines.points[q]);
                 let thick = 0.5 * (polylines.thickness[p] + polylines.thickness[q]);
-                edges.push(Edge {
+                let edge = Edge {
                     line: number,
                     at: at as u32,
                     middle: std::array::from_fn(|k| 0.5 * (a[k] + b[k])),
                     direction: crate::grid::unit(sub(b, a)),
                     thickness: thick.into(),
-                });
+                };
+                push(&mut edges, edge)?;
             }
         }
         let indexed = edges.iter().enumerate();
         let indexed = indexed.map(|(i, edge)| GeomWithData::new(edge.middle, i as u32));
-        let tree = RTree::bulk_load(indexed.collect());
-        Self {
+        let tree = RTree::bulk_load(collected(indexed)?);
+        Ok(Self {
             polylines,
             edges,
             tree,
-        }
+        })
     }
 
     fn line(&self, edge: usize) -> &'a Polyline {
@@ -144,14 +145,11 @@ impl<'a> SliceEdges<'a> {
     }
 
     /// The nearest edge of the other slice to each edge.
-    fn nearest(&self, other: &Self) -> Vec<usize> {
-        self.edges
-            .iter()
-            .map(|edge| {
-                let found = other.tree.nearest_neighbor(&edge.middle);
-                found.map_or(usize::MAX, |nearest| nearest.data as usize)
-            })
-            .collect()
+    fn nearest(&self, other: &Self) -> Result<Vec<usize>> {
+        collected(self.edges.iter().map(|edge| {
+            let found = other.tree.nearest_neighbor(&edge.middle);
+            found.map_or(usize::MAX, |nearest| nearest.data as usize)
+        }))
     }
 
     /// The edge `steps` after `edge` on its line, `None` beyond an end.
@@ -203,43 +201,44 @@ struct Pairing<'a> {
     taken_below: Vec<bool>,
 }
 
-fn zip_slices(below: &SliceEdges, above: &SliceEdges) -> Vec<Zipped> {
+fn zip_slices(below: &SliceEdges, above: &SliceEdges) -> Result<Vec<Zipped>> {
     if below.edges.is_empty() || above.edges.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
-    let mut pairing = Pairing::new(below, above);
+    let mut pairing = Pairing::new(below, above)?;
     let mut triangles = Vec::new();
     for chain in pairing.chains() {
         let sides = pairing.extended(&chain);
         let line = below.edges[chain.pairs[0].0].line;
         let strip = triangulate(&below.polylines.points, &sides[0], &sides[1]);
-        triangles.extend(strip.into_iter().map(|triangle| (triangle, line)));
+        extend(
+            &mut triangles,
+            strip.into_iter().map(|triangle| (triangle, line)),
+        )?;
     }
-    triangles
+    Ok(triangles)
 }
 
 impl<'a> Pairing<'a> {
-    fn new(below: &'a SliceEdges<'a>, above: &'a SliceEdges<'a>) -> Self {
-        let nearest_above = below.nearest(above);
-        let nearest_below = above.nearest(below);
-        let partner: Vec<Option<usize>> = (0..below.edges.len())
-            .map(|a| {
-                let b = nearest_above[a];
-                let (p, q) = (&below.edges[a], &above.edges[b]);
-                let mutual = nearest_below[b] == a;
-                let gap = length(sub(p.middle, q.middle));
-                let thick = p.thickness.max(q.thickness);
-                // Lines of one sheet run side by side and within the label.
-                let aligned = dot(p.direction, q.direction).abs() > 0.3;
-                (mutual && aligned && gap <= reach(below, a, thick)).then_some(b)
-            })
-            .collect();
-        let mut taken_above = vec![false; above.edges.len()];
+    fn new(below: &'a SliceEdges<'a>, above: &'a SliceEdges<'a>) -> Result<Self> {
+        let nearest_above = below.nearest(above)?;
+        let nearest_below = above.nearest(below)?;
+        let partner = collected((0..below.edges.len()).map(|a| {
+            let b = nearest_above[a];
+            let (p, q) = (&below.edges[a], &above.edges[b]);
+            let mutual = nearest_below[b] == a;
+            let gap = length(sub(p.middle, q.middle));
+            let thick = p.thickness.max(q.thickness);
+            // Lines of one sheet run side by side and within the label.
+            let aligned = dot(p.direction, q.direction).abs() > 0.3;
+            (mutual && aligned && gap <= reach(below, a, thick)).then_some(b)
+        }))?;
+        let mut taken_above: Vec<bool> = zeros(above.edges.len())?;
         for &b in partner.iter().flatten() {
             taken_above[b] = true;
         }
-        let taken_below = partner.iter().map(Option::is_some).collect();
-        Self {
+        let taken_below = collected(partner.iter().map(Option::is_some))?;
+        Ok(Self {
             below,
             above,
             nearest_above,
@@ -247,7 +246,7 @@ impl<'a> Pairing<'a> {
             partner,
             taken_above,
             taken_below,
-        }
+        })
     }
 
     fn distance(&self, a: usize, b: usize) -> f64 {

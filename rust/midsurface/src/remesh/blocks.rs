@@ -7,7 +7,7 @@
 
 use super::patch::{Patch, Vertex};
 use super::reference::Reference;
-use crate::error::{reserved, zeros, Error, Result};
+use crate::error::{check_count, collected, extend, filled, push, reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::halfedge::NONE;
 
@@ -61,7 +61,7 @@ impl Blocks {
         let mut start = 0;
         for run in keys.chunk_by(|a, b| a == b) {
             let end = start + run.len() as u32;
-            runs.push((run[0], start, end));
+            push(&mut runs, (run[0], start, end))?;
             start = end;
         }
         runs.sort_unstable();
@@ -69,18 +69,18 @@ impl Blocks {
         let mut starts = vec![0];
         for block in runs.chunk_by(|a, b| a.0 == b.0) {
             order.extend(block.iter().flat_map(|&(_, start, end)| start..end));
-            starts.push(order.len() as u32);
+            push(&mut starts, order.len() as u32)?;
         }
         let points = surface.vertices.len();
         let mut blocks = Self {
             order,
             starts,
-            owner: vec![NONE; points],
+            owner: filled(NONE, points)?,
             rank: zeros(points)?,
             ranked: Vec::new(),
             valence: zeros(points)?,
         };
-        blocks.assign_points(surface);
+        blocks.assign_points(surface)?;
         Ok(blocks)
     }
 
@@ -92,7 +92,7 @@ impl Blocks {
         &self.order[self.starts[block] as usize..self.starts[block + 1] as usize]
     }
 
-    fn assign_points(&mut self, surface: &Surface) {
+    fn assign_points(&mut self, surface: &Surface) -> Result<()> {
         for block in 0..self.count() {
             let mut ranked = 0;
             let range = self.starts[block] as usize..self.starts[block + 1] as usize;
@@ -109,8 +109,9 @@ impl Blocks {
                     self.valence[p] = self.valence[p].saturating_add(1);
                 }
             }
-            self.ranked.push(ranked);
+            push(&mut self.ranked, ranked)?;
         }
+        Ok(())
     }
 
     /// Lets `work` change every block, and returns the new surface.
@@ -120,43 +121,47 @@ impl Blocks {
         reference: &Reference,
         (scale, longest): (f64, f64),
         execution: &mut Execution,
-        work: impl Fn(&mut Patch) + Sync,
+        work: impl Fn(&mut Patch) -> Result<()> + Sync,
     ) -> Result<Surface> {
         let mut new = Surface::default();
-        let mut number: Vec<u32> = vec![NONE; surface.vertices.len()];
-        let blocks: Vec<usize> = (0..self.count()).collect();
+        let mut number = filled(NONE, surface.vertices.len())?;
+        let blocks = collected(0..self.count())?;
         execution.stream(
             &blocks,
             |&block| {
-                let (mut patch, global) = self.patch(surface, reference, (scale, longest), block);
-                work(&mut patch);
+                let (mut patch, global) =
+                    self.patch(surface, reference, (scale, longest), block)?;
+                work(&mut patch)?;
                 collect(&patch, &global)
             },
-            |worked: Worked| {
+            |worked: Result<Worked>| {
+                let worked = worked?;
+                let most = new.vertices.len() + worked.vertices.len();
+                // Numbers from GLOBAL on stand for others.
+                check_count("points", most, 2)?;
+                check_count("triangles", new.triangles.len() + worked.triangles.len(), 3)?;
                 let first = new.vertices.len() as u32;
-                let refused = |_| Error::OutOfMemory(worked.triangles.len() * 12);
-                new.vertices
-                    .try_reserve(worked.vertices.len())
-                    .map_err(refused)?;
-                new.triangles
-                    .try_reserve(worked.triangles.len())
-                    .map_err(refused)?;
-                new.vertices.extend(worked.vertices);
-                for triangle in worked.triangles {
-                    let renumbered = triangle.map(|p| {
-                        if p & GLOBAL == 0 {
-                            return first + p;
-                        }
-                        let p = (p ^ GLOBAL) as usize;
-                        if number[p] == NONE {
-                            number[p] = new.vertices.len() as u32;
-                            new.vertices.push(surface.vertices[p]);
-                        }
-                        number[p]
-                    });
-                    new.triangles.push(renumbered);
+                extend(&mut new.vertices, worked.vertices)?;
+                for p in worked
+                    .triangles
+                    .iter()
+                    .flatten()
+                    .filter(|p| *p & GLOBAL != 0)
+                {
+                    let p = (p ^ GLOBAL) as usize;
+                    if number[p] == NONE {
+                        number[p] = new.vertices.len() as u32;
+                        push(&mut new.vertices, surface.vertices[p])?;
+                    }
                 }
-                Ok(())
+                let renumbered = |p: u32| match p & GLOBAL {
+                    0 => first + p,
+                    _ => number[(p ^ GLOBAL) as usize],
+                };
+                extend(
+                    &mut new.triangles,
+                    worked.triangles.iter().map(|t| t.map(renumbered)),
+                )
             },
         )?;
         Ok(new)
@@ -169,20 +174,17 @@ impl Blocks {
         reference: &'a Reference<'a>,
         (scale, longest): (f64, f64),
         block: usize,
-    ) -> (Patch<'a>, Vec<u32>) {
+    ) -> Result<(Patch<'a>, Vec<u32>)> {
         let own = self.triangles_of(block);
         let corners = |t: &u32| surface.triangles[*t as usize];
-        let mut shared: Vec<u32> = own
-            .iter()
-            .flat_map(corners)
-            .filter(|&p| self.owner[p as usize] == SHARED)
-            .collect();
+        let is_shared = |&p: &u32| self.owner[p as usize] == SHARED;
+        let mut shared = collected(own.iter().flat_map(corners).filter(is_shared))?;
         shared.sort_unstable();
         shared.dedup();
         let ranked = self.ranked[block] as usize;
-        let mut vertices = vec![Vertex::default(); ranked];
-        let mut valence = vec![0; ranked];
-        let mut triangles = Vec::with_capacity(own.len());
+        let mut vertices = filled(Vertex::default(), ranked)?;
+        let mut valence: Vec<i32> = zeros(ranked)?;
+        let mut triangles = reserved(own.len())?;
         for t in own {
             triangles.push(corners(t).map(|p| {
                 if self.owner[p as usize] == SHARED {
@@ -195,13 +197,13 @@ impl Blocks {
                 local
             }));
         }
-        let mut frozen = vec![false; ranked];
-        for &p in &shared {
-            vertices.push(surface.vertices[p as usize]);
-            valence.push(i32::from(self.valence[p as usize]));
-            frozen.push(true);
-        }
-        let global = (0..ranked).map(|_| NONE).chain(shared).collect();
+        let mut frozen = filled(true, ranked + shared.len())?;
+        frozen[..ranked].fill(false);
+        let beyond = || shared.iter().map(|&p| p as usize);
+        extend(&mut vertices, beyond().map(|p| surface.vertices[p]))?;
+        extend(&mut valence, beyond().map(|p| i32::from(self.valence[p])))?;
+        let mut global = filled(NONE, ranked)?;
+        extend(&mut global, shared)?;
         let patch = Patch::new(
             reference,
             (scale, longest),
@@ -209,8 +211,8 @@ impl Blocks {
             frozen,
             valence,
             triangles,
-        );
-        (patch, global)
+        )?;
+        Ok((patch, global))
     }
 }
 
@@ -238,11 +240,11 @@ fn keys(
 }
 
 /// The points and triangles of a patch that are left, frozen points by their global numbers.
-fn collect(patch: &Patch, global: &[u32]) -> Worked {
-    let mut number = vec![NONE; patch.vertices.len()];
+fn collect(patch: &Patch, global: &[u32]) -> Result<Worked> {
+    let mut number = filled(NONE, patch.vertices.len())?;
     let mut worked = Worked {
-        vertices: Vec::with_capacity(patch.vertices.len()),
-        triangles: Vec::with_capacity(patch.triangles.len()),
+        vertices: reserved(patch.vertices.len())?,
+        triangles: reserved(patch.triangles.len())?,
     };
     for triangle in patch.triangles.iter().filter(|t| t[0] != NONE) {
         worked.triangles.push(triangle.map(|p| {
@@ -257,5 +259,5 @@ fn collect(patch: &Patch, global: &[u32]) -> Worked {
             number[p]
         }));
     }
-    worked
+    Ok(worked)
 }

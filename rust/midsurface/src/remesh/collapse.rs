@@ -6,6 +6,7 @@
 
 use super::patch::{Kind, Patch};
 use super::shape::{facing, squared_sine};
+use crate::error::{collected, Result};
 use crate::grid::squared_distance;
 use crate::halfedge::{next, previous, NONE};
 
@@ -21,11 +22,10 @@ const SHARP: f64 = 0.2;
 const STALE: f64 = -1.0;
 
 /// Collapses edges that are too short, where that is possible.
-pub(super) fn collapse_short_edges(patch: &mut Patch) {
+pub(super) fn collapse_short_edges(patch: &mut Patch) -> Result<()> {
     let mut ring = Vec::new();
-    let mut shares: Vec<f64> = (0..patch.twins.len() as u32)
-        .map(|e| squared_share(patch, e))
-        .collect();
+    let all = 0..patch.twins.len() as u32;
+    let mut shares = collected(all.map(|e| squared_share(patch, e)))?;
     let shortest = shares.iter().copied().fold(f64::INFINITY, f64::min);
     for share in SWEEPS {
         let limit = (share * SHORT).powi(2);
@@ -54,6 +54,7 @@ pub(super) fn collapse_short_edges(patch: &mut Patch) {
             }
         }
     }
+    Ok(())
 }
 
 /// The half-edges that change if half-edge e is collapsed, one of whose ends `ring` leaves: those of

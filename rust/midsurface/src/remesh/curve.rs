@@ -7,6 +7,7 @@
 
 use super::patch::{Kind, Vertex};
 use super::reference::Reference;
+use crate::error::{collected, extend, filled, push, Result};
 use crate::grid::{along, dot, length, sub, unit, Vec3};
 use crate::halfedge::{ends, NONE};
 
@@ -41,40 +42,37 @@ pub(super) struct Curve {
 
 impl Curve {
     /// Links the half-edges without a twin to loops.
-    pub fn new(points: &[Vec3], triangles: &[[u32; 3]], twins: &[u32]) -> Self {
+    pub fn new(points: &[Vec3], triangles: &[[u32; 3]], twins: &[u32]) -> Result<Self> {
         let mut curve = Self::default();
-        let border: Vec<u32> = (0..twins.len() as u32)
-            .filter(|&e| twins[e as usize] == NONE)
-            .collect();
-        let mut leaving: Vec<(u32, u32)> =
-            border.iter().map(|&e| (ends(triangles, e).0, e)).collect();
+        let border = (0..twins.len() as u32).filter(|&e| twins[e as usize] == NONE);
+        let mut leaving = collected(border.map(|e| (ends(triangles, e).0, e)))?;
         leaving.sort_unstable();
         let position = |p: u32| leaving.binary_search_by_key(&p, |l| l.0).ok();
-        let mut seen = vec![false; leaving.len()];
+        let mut seen = filled(false, leaving.len())?;
         for start in 0..leaving.len() {
             let first = curve.half_edges.len();
             let mut at = Some(start);
             while let Some(i) = at.filter(|&i| !seen[i]) {
                 seen[i] = true;
-                curve.half_edges.push(leaving[i].1);
-                curve.points.push(points[leaving[i].0 as usize]);
+                push(&mut curve.half_edges, leaving[i].1)?;
+                push(&mut curve.points, points[leaving[i].0 as usize])?;
                 at = position(ends(triangles, leaving[i].1).1);
             }
-            curve.close_loop(first);
+            curve.close_loop(first)?;
         }
-        curve
+        Ok(curve)
     }
 
     /// Makes a loop of all points from `first` on.
-    fn close_loop(&mut self, first: usize) {
+    fn close_loop(&mut self, first: usize) -> Result<()> {
         let points = &self.points[first..];
         let count = points.len();
         if count == 0 {
-            return;
+            return Ok(());
         }
         let mut length_so_far = 0.0;
         for i in 0..count {
-            self.parameters.push(length_so_far);
+            push(&mut self.parameters, length_so_far)?;
             length_so_far += length(sub(points[(i + 1) % count], points[i]));
         }
         let curve = Loop {
@@ -82,22 +80,20 @@ impl Curve {
             count,
             length: length_so_far,
         };
-        self.loops.push(curve);
+        push(&mut self.loops, curve)?;
         let number = self.loops.len() as u32 - 1;
-        let turns: Vec<f64> = (0..count)
-            .map(|i| self.turn(number, self.parameters[first + i]))
-            .collect();
+        let turn = |i| self.turn(number, self.parameters[first + i]);
+        let turns = collected((0..count).map(turn))?;
         let is_corner = |i: usize| {
             let sharpest = |j: usize| turns[i] <= turns[j % count];
             curve.length > ROUND && turns[i] < CORNER && sharpest(i + 1) && sharpest(i + count - 1)
         };
-        let tangents: Vec<Vec3> = (0..count)
-            .map(|i| match is_corner(i) {
-                true => [0.0; 3],
-                false => self.tangent(curve, i),
-            })
-            .collect();
-        self.tangents.extend(tangents);
+        let tangent = |i| match is_corner(i) {
+            true => [0.0; 3],
+            false => self.tangent(curve, i),
+        };
+        let tangents = collected((0..count).map(tangent))?;
+        extend(&mut self.tangents, tangents)
     }
 
     /// Cosine of the angle by which a loop turns around a place, over the reach where it is less.

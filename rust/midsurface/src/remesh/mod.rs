@@ -35,7 +35,7 @@ mod subdivide;
 #[cfg(test)]
 mod tests;
 
-use crate::error::{reserved, zeros, Result};
+use crate::error::{collected, filled, Result};
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::halfedge::ends;
@@ -97,7 +97,7 @@ pub(crate) fn remesh(
     for (number, &longest) in coarse.iter().enumerate() {
         let blocks = Blocks::new(&surface, BLOCK * longest, shift(number), execution)?;
         surface = blocks.work(&surface, &reference, (2.0, longest), execution, |patch| {
-            improve(patch);
+            improve(patch)
         })?;
     }
     surface = subdivide(&surface, &reference, execution)?;
@@ -109,8 +109,9 @@ pub(crate) fn remesh(
             (1.0, edge_length),
             execution,
             |patch| {
-                improve(patch);
+                improve(patch)?;
                 polish::polish(patch);
+                Ok(())
             },
         )?;
     }
@@ -126,13 +127,14 @@ fn shift(pass: usize) -> [f64; 3] {
 }
 
 /// One pass over a block.
-fn improve(patch: &mut Patch) {
-    split::split_long_edges(patch);
-    collapse::collapse_short_edges(patch);
+fn improve(patch: &mut Patch) -> Result<()> {
+    split::split_long_edges(patch)?;
+    collapse::collapse_short_edges(patch)?;
     for _ in 0..RELAXATIONS {
         flip::flip_edges(patch);
         relax::relax(patch);
     }
+    Ok(())
 }
 
 /// The longest edge wanted in each pass. Much coarser meshes are reached by doubling, so that
@@ -150,7 +152,7 @@ fn schedule(edge_length: f64) -> Vec<f64> {
 
 /// The reference as the first surface.
 fn start(reference: &Reference) -> Result<Surface> {
-    let mut vertices: Vec<Vertex> = zeros(reference.points.len())?;
+    let mut vertices = filled(Vertex::default(), reference.points.len())?;
     for (t, triangle) in reference.triangles.iter().enumerate() {
         for p in triangle.map(|p| p as usize) {
             vertices[p] = Vertex {
@@ -167,17 +169,15 @@ fn start(reference: &Reference) -> Result<Surface> {
         (vertex.at, vertex.parameter) = (number, parameter);
         vertex.kind = if corner { Kind::Corner } else { Kind::Boundary };
     }
-    let mut triangles = reserved(reference.triangles.len())?;
-    triangles.extend_from_slice(reference.triangles);
     Ok(Surface {
         vertices,
-        triangles,
+        triangles: collected(reference.triangles.iter().copied())?,
     })
 }
 
 /// The result, with each point's origin.
 fn finish(reference: &Reference, surface: Surface, execution: &mut Execution) -> Result<Remeshed> {
-    let mut origin: Vec<Origin> = zeros(surface.vertices.len())?;
+    let mut origin = filled(Origin::default(), surface.vertices.len())?;
     execution.fill(&mut origin, PIECE, |piece, out| {
         for (i, origin) in out.iter_mut().enumerate() {
             let Place { triangle, weights } = reference.place(&surface.vertices[piece * PIECE + i]);
@@ -187,10 +187,8 @@ fn finish(reference: &Reference, surface: Surface, execution: &mut Execution) ->
             };
         }
     })?;
-    let mut points = reserved(surface.vertices.len())?;
-    points.extend(surface.vertices.iter().map(|v| v.point));
     Ok(Remeshed {
-        points,
+        points: collected(surface.vertices.iter().map(|v| v.point))?,
         triangles: surface.triangles,
         origin,
     })

@@ -6,6 +6,7 @@
 //! wherever one of its ends is not frozen.
 
 use super::reference::Reference;
+use crate::error::{extend, filled, push, reserve, reserved, zeros, Result};
 use crate::grid::Vec3;
 use crate::halfedge::{next, previous, twins_if_wound, NONE};
 
@@ -79,9 +80,9 @@ impl<'a> Patch<'a> {
         frozen: Vec<bool>,
         valence: Vec<i32>,
         triangles: Vec<[u32; 3]>,
-    ) -> Self {
+    ) -> Result<Self> {
         let count = vertices.len();
-        let mut fan = vec![0; count];
+        let mut fan: Vec<i32> = zeros(count)?;
         for t in &triangles {
             t.iter().for_each(|&p| fan[p as usize] += 1);
         }
@@ -93,16 +94,16 @@ impl<'a> Patch<'a> {
             frozen,
             valence,
             fan,
-            out: vec![NONE; count],
+            out: filled(NONE, count)?,
             twins: Vec::new(),
+            free: reserved(triangles.len())?,
             triangles,
-            free: Vec::new(),
         };
-        patch.twins = twins_if_wound(&patch.triangles, count);
+        patch.twins = twins_if_wound(&patch.triangles, count)?;
         for e in 0..patch.twins.len() as u32 {
             patch.set_out(e);
         }
-        patch
+        Ok(patch)
     }
 
     /// First point of a half-edge.
@@ -189,13 +190,24 @@ impl<'a> Patch<'a> {
         }
     }
 
-    fn add_triangle(&mut self) -> u32 {
+    fn add_triangle(&mut self) -> Result<u32> {
         if let Some(t) = self.free.pop() {
-            return t;
+            return Ok(t);
         }
-        self.triangles.push([NONE; 3]);
-        self.twins.extend([NONE; 3]);
-        self.triangles.len() as u32 - 1
+        push(&mut self.triangles, [NONE; 3])?;
+        extend(&mut self.twins, [NONE; 3])?;
+        // Room for all of them, so that removing one asks for nothing.
+        reserve(&mut self.free, self.triangles.len())?;
+        Ok(self.triangles.len() as u32 - 1)
+    }
+
+    /// Appends a point that no triangle uses yet.
+    fn add_point(&mut self, vertex: Vertex, valence: i32, fan: i32) -> Result<()> {
+        push(&mut self.vertices, vertex)?;
+        push(&mut self.frozen, false)?;
+        push(&mut self.valence, valence)?;
+        push(&mut self.fan, fan)?;
+        push(&mut self.out, NONE)
     }
 
     /// Turns the edge of e, shared by triangles abc and bad, into cd.
@@ -221,17 +233,14 @@ impl<'a> Patch<'a> {
     }
 
     /// Puts a new point on the edge of e, and returns it.
-    pub fn split(&mut self, e: u32, vertex: Vertex) -> u32 {
+    pub fn split(&mut self, e: u32, vertex: Vertex) -> Result<u32> {
         let m = self.vertices.len() as u32;
         let [a, b, c] = [self.origin(e), self.end(e), self.opposite(e)];
         let f = self.twin(e);
-        self.vertices.push(vertex);
-        self.frozen.push(false);
-        self.valence.push(if f == NONE { 3 } else { 4 });
-        self.fan.push(if f == NONE { 2 } else { 4 });
-        self.out.push(NONE);
+        let (valence, fan) = if f == NONE { (3, 2) } else { (4, 4) };
+        self.add_point(vertex, valence, fan)?;
         let (bc, ca) = (self.twin(next(e)), self.twin(previous(e)));
-        let (s, s2) = (e / 3, self.add_triangle());
+        let (s, s2) = (e / 3, self.add_triangle()?);
         self.triangles[s as usize] = [a, m, c];
         self.triangles[s2 as usize] = [m, b, c];
         self.count(c, 1);
@@ -241,7 +250,7 @@ impl<'a> Patch<'a> {
         } else {
             let d = self.opposite(f);
             let (ad, db) = (self.twin(next(f)), self.twin(previous(f)));
-            let (t, t2) = (f / 3, self.add_triangle());
+            let (t, t2) = (f / 3, self.add_triangle()?);
             self.triangles[t as usize] = [m, a, d];
             self.triangles[t2 as usize] = [b, m, d];
             self.count(d, 1);
@@ -254,7 +263,7 @@ impl<'a> Patch<'a> {
         self.link(3 * s + 1, 3 * s2 + 2);
         self.link(3 * s + 2, ca);
         self.link(3 * s2 + 1, bc);
-        m
+        Ok(m)
     }
 
     fn count(&mut self, p: u32, change: i32) {
@@ -289,7 +298,7 @@ impl<'a> Patch<'a> {
     }
 
     /// The triangles up to so many rings around a point that is not frozen, as a patch of their own.
-    pub fn neighbourhood(&self, p: u32, rings: u8) -> Neighbourhood<'a> {
+    pub fn neighbourhood(&self, p: u32, rings: u8) -> Result<Neighbourhood<'a>> {
         let mut points = vec![p];
         let mut triangles: Vec<u32> = Vec::new();
         let mut done = 0;
@@ -328,28 +337,24 @@ impl<'a> Patch<'a> {
             vec![false; points.len()],
             points.iter().map(|&p| self.valence[p as usize]).collect(),
             corners.collect(),
-        );
+        )?;
         for (i, &p) in points.iter().enumerate() {
             patch.frozen[i] = self.frozen[p as usize] || patch.fan[i] < self.fan[p as usize];
         }
-        Neighbourhood {
+        Ok(Neighbourhood {
             patch,
             points,
             triangles,
-        }
+        })
     }
 
     /// Puts a neighbourhood back, changed.
-    pub fn put_back(&mut self, place: Neighbourhood, changed: Patch) {
+    pub fn put_back(&mut self, place: Neighbourhood, changed: Patch) -> Result<()> {
         let mut points = place.points;
         for (i, vertex) in changed.vertices.iter().enumerate() {
             if i == points.len() {
                 points.push(self.vertices.len() as u32);
-                self.vertices.push(*vertex);
-                self.frozen.push(false);
-                self.valence.push(0);
-                self.fan.push(0);
-                self.out.push(NONE);
+                self.add_point(*vertex, 0, 0)?;
             }
             let p = points[i] as usize;
             self.vertices[p] = *vertex;
@@ -375,7 +380,7 @@ impl<'a> Patch<'a> {
         let old: Vec<u32> = (0..changed.triangles.len() as u32).filter(alive).collect();
         let mut new = vec![NONE; changed.triangles.len()];
         for &t in &old {
-            new[t as usize] = self.add_triangle();
+            new[t as usize] = self.add_triangle()?;
             let corners = changed.triangles[t as usize];
             self.triangles[new[t as usize] as usize] = corners.map(|p| points[p as usize]);
         }
@@ -392,6 +397,7 @@ impl<'a> Patch<'a> {
             };
             self.link(e, twin);
         }
+        Ok(())
     }
 
     /// Whether a point is used by no triangle any more.

@@ -51,7 +51,7 @@ impl<'a> Reference<'a> {
         edge_length: f64,
         execution: &mut Execution,
     ) -> Result<Self> {
-        let fans = Fans::new(triangles, points.len());
+        let fans = Fans::new(triangles, points.len())?;
         let mut twins = zeros(3 * triangles.len())?;
         execution.fill(&mut twins, 3 * PIECE, |piece, out| {
             for (i, twin) in out.iter_mut().enumerate() {
@@ -65,7 +65,7 @@ impl<'a> Reference<'a> {
                 *normal = normal_of_fan(points, triangles, leaving).map(|v| v as f32);
             }
         })?;
-        let curve = Curve::new(points, triangles, &twins);
+        let curve = Curve::new(points, triangles, &twins)?;
         let mut reference = Self {
             points,
             triangles,

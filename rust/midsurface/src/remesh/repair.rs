@@ -19,7 +19,7 @@ use super::reference::Reference;
 use super::relax::relax;
 use super::shape::{facing, sine_of_smallest_angle};
 use super::split::near_middle;
-use crate::error::{reserved, zeros, Result};
+use crate::error::{collected, filled, reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::halfedge::{next, previous, NONE};
 
@@ -64,12 +64,12 @@ pub(super) fn repair(
     }
     let (mut patch, points) = cut_out(&surface, &near, reference, longest)?;
     execution.in_pool(|| {
-        for p in 0..patch.vertices.len() as u32 {
-            if is_fault(&patch, p) {
-                repair_at(&mut patch, p);
-            }
-        }
-    });
+        let mut all = 0..patch.vertices.len() as u32;
+        all.try_for_each(|p| match is_fault(&patch, p) {
+            true => repair_at(&mut patch, p),
+            false => Ok(()),
+        })
+    })?;
     put_back(&surface, &near, &patch, &points)
 }
 
@@ -105,13 +105,8 @@ fn near_faults(surface: &Surface) -> Result<Vec<bool>> {
             }
         }
     }
-    let mut near = reserved(triangles.len())?;
-    near.extend(
-        triangles
-            .iter()
-            .map(|t| t.iter().any(|&p| ring[p as usize] > 0)),
-    );
-    Ok(near)
+    let is_near = |t: &[u32; 3]| t.iter().any(|&p| ring[p as usize] > 0);
+    collected(triangles.iter().map(is_near))
 }
 
 /// The triangles near faults as a patch, with the numbers of its points in the surface.
@@ -129,7 +124,7 @@ fn cut_out<'a>(
             .filter(|t| *t.1)
             .map(|t| t.0)
     };
-    let mut points: Vec<u32> = of_interest().flatten().copied().collect();
+    let mut points = collected(of_interest().flatten().copied())?;
     points.sort_unstable();
     points.dedup();
     let mut number: Vec<u32> = zeros(surface.vertices.len())?;
@@ -138,24 +133,16 @@ fn cut_out<'a>(
     }
     let local = |p: u32| number[p as usize].checked_sub(1);
     // Points with triangles beyond are frozen.
-    let mut frozen = vec![false; points.len()];
-    let vertices: Vec<Vertex> = points
-        .iter()
-        .map(|&p| surface.vertices[p as usize])
-        .collect();
-    let mut valence: Vec<i32> = vertices
-        .iter()
-        .map(|v| i32::from(v.is_boundary()))
-        .collect();
+    let mut frozen = filled(false, points.len())?;
+    let vertices = collected(points.iter().map(|&p| surface.vertices[p as usize]))?;
+    let mut valence = collected(vertices.iter().map(|v| i32::from(v.is_boundary())))?;
     for (t, &near) in surface.triangles.iter().zip(near) {
         for p in t.iter().filter_map(|&p| local(p)) {
             valence[p as usize] += 1;
             frozen[p as usize] |= !near;
         }
     }
-    let triangles = of_interest()
-        .map(|t| t.map(|p| number[p as usize] - 1))
-        .collect();
+    let triangles = collected(of_interest().map(|t| t.map(|p| number[p as usize] - 1)))?;
     let patch = Patch::new(
         reference,
         (1.0, longest),
@@ -163,7 +150,7 @@ fn cut_out<'a>(
         frozen,
         valence,
         triangles,
-    );
+    )?;
     Ok((patch, points))
 }
 
@@ -223,11 +210,11 @@ fn sine(patch: &Patch, triangle: [u32; 3]) -> f64 {
     sine_of_smallest_angle(triangle.map(|p| patch.point(p)))
 }
 
-fn repair_at(patch: &mut Patch, p: u32) {
-    let place = patch.neighbourhood(p, RINGS);
+fn repair_at(patch: &mut Patch, p: u32) -> Result<()> {
+    let place = patch.neighbourhood(p, RINGS)?;
     let before = cost(&place.patch);
     if before > CREASED {
-        return;
+        return Ok(());
     }
     let mut best = before - GAIN;
     let mut found = None;
@@ -236,7 +223,10 @@ fn repair_at(patch: &mut Patch, p: u32) {
             .par_iter()
             .map(|change| outcome(&place.patch, *change))
             .collect();
-        for (cost, trial) in outcomes.into_iter().flatten() {
+        for outcome in outcomes {
+            let Some((cost, trial)) = outcome? else {
+                continue;
+            };
             if cost < best {
                 best = cost;
                 found = Some(trial);
@@ -247,17 +237,19 @@ fn repair_at(patch: &mut Patch, p: u32) {
         }
     }
     if let Some(trial) = found {
-        patch.put_back(place, trial);
+        patch.put_back(place, trial)?;
     }
+    Ok(())
 }
 
 /// What becomes of a patch by a change, and what is wrong in it then.
-fn outcome<'a>(patch: &Patch<'a>, change: Change) -> Option<(f64, Patch<'a>)> {
+fn outcome<'a>(patch: &Patch<'a>, change: Change) -> Result<Option<(f64, Patch<'a>)>> {
     let mut trial = patch.clone();
-    apply(&mut trial, change).then(|| {
+    let is_made = apply(&mut trial, change)?;
+    Ok(is_made.then(|| {
         settle(&mut trial, matches!(change, Change::Flip(_)));
         (cost(&trial), trial)
-    })
+    }))
 }
 
 /// What is wrong in a patch.
@@ -301,8 +293,8 @@ fn changes(patch: &Patch) -> Vec<Change> {
 }
 
 /// Makes a change where the topology and the shape of the surface allow it.
-fn apply(patch: &mut Patch, change: Change) -> bool {
-    match change {
+fn apply(patch: &mut Patch, change: Change) -> Result<bool> {
+    Ok(match change {
         Change::Flip(e) => {
             let allowed = patch.twin(e) != NONE && may_flip(patch, e) && keeps_facing(patch, e);
             if allowed {
@@ -313,12 +305,12 @@ fn apply(patch: &mut Patch, change: Change) -> bool {
         Change::Split(e) => {
             let ends = [patch.origin(e), patch.end(e)];
             if patch.twin(e) == NONE && ends.iter().all(|&p| patch.frozen[p as usize]) {
-                return false;
+                return Ok(false);
             }
             let Some(vertex) = near_middle(patch, e) else {
-                return false;
+                return Ok(false);
             };
-            patch.split(e, vertex);
+            patch.split(e, vertex)?;
             true
         }
         Change::Collapse(e, v, u) => {
@@ -329,7 +321,7 @@ fn apply(patch: &mut Patch, change: Change) -> bool {
             }
             allowed
         }
-    }
+    })
 }
 
 fn keeps_facing(patch: &Patch, e: u32) -> bool {

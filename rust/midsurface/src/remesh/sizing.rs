@@ -11,7 +11,7 @@ use std::collections::BinaryHeap;
 
 use super::reference::Reference;
 use crate::buckets::{self, Buckets};
-use crate::error::{reserved, zeros, Result};
+use crate::error::{collected, refused, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, length, sub, Vec3};
 use crate::halfedge::{ends, Fans};
@@ -40,8 +40,7 @@ pub(super) fn sizes(
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
     let neighbours = &fans.neighbours(reference.triangles, execution)?;
-    let mut normals: Vec<Vec3> = reserved(reference.normals.len())?;
-    normals.extend(reference.normals.iter().map(|n| n.map(f64::from)));
+    let normals = collected(reference.normals.iter().map(|n| n.map(f64::from)))?;
     let normals = average_normals(normals, neighbours, SMOOTHING, execution)?;
     let mut sizes: Vec<f32> = zeros(reference.points.len())?;
     execution.fill(&mut sizes, PIECE, |piece, out| {
@@ -59,7 +58,7 @@ pub(super) fn sizes(
         let size = &mut sizes[p as usize];
         *size = size.min(wanted);
     }
-    grade(reference, neighbours, edge_length as f32, &mut sizes);
+    grade(reference, neighbours, edge_length as f32, &mut sizes)?;
     Ok(sizes)
 }
 
@@ -85,12 +84,16 @@ fn curvature(reference: &Reference, neighbours: &Buckets<u32>, normals: &[Vec3],
 }
 
 /// Limits the growth of the sizes along the surface, from the fine places outward.
-fn grade(reference: &Reference, neighbours: &Buckets<u32>, edge_length: f32, sizes: &mut [f32]) {
+fn grade(
+    reference: &Reference,
+    neighbours: &Buckets<u32>,
+    edge_length: f32,
+    sizes: &mut [f32],
+) -> Result<()> {
     // Sizes are positive, so that their bits order as they do.
-    let mut heap: BinaryHeap<Reverse<(u32, u32)>> = (0..sizes.len() as u32)
-        .filter(|&p| sizes[p as usize] < edge_length)
-        .map(|p| Reverse((sizes[p as usize].to_bits(), p)))
-        .collect();
+    let fine = (0..sizes.len() as u32).filter(|&p| sizes[p as usize] < edge_length);
+    let fine = fine.map(|p| Reverse((sizes[p as usize].to_bits(), p)));
+    let mut heap = BinaryHeap::from(collected(fine)?);
     while let Some(Reverse((bits, p))) = heap.pop() {
         if bits != sizes[p as usize].to_bits() {
             continue;
@@ -103,8 +106,11 @@ fn grade(reference: &Reference, neighbours: &Buckets<u32>, edge_length: f32, siz
             let most = f32::from_bits(bits) + (GROWTH * way) as f32;
             if most < sizes[q as usize] {
                 sizes[q as usize] = most;
+                heap.try_reserve(1)
+                    .map_err(|_| refused::<Reverse<(u32, u32)>>(1))?;
                 heap.push(Reverse((most.to_bits(), q)));
             }
         }
     }
+    Ok(())
 }

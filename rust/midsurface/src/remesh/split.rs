@@ -2,6 +2,7 @@
 
 use super::patch::{Patch, Vertex};
 use super::reference::Reference;
+use crate::error::Result;
 use crate::grid::{squared_distance, Vec3};
 use crate::halfedge::NONE;
 
@@ -17,7 +18,7 @@ const OFF: f64 = 0.3;
 const NEAR: f64 = 0.1;
 
 /// Splits edges until none is too long.
-pub(super) fn split_long_edges(patch: &mut Patch) {
+pub(super) fn split_long_edges(patch: &mut Patch) -> Result<()> {
     let longest = (0..patch.twins.len() as u32)
         .map(|e| squared_excess(patch, e))
         .fold(0.0, f64::max);
@@ -29,11 +30,12 @@ pub(super) fn split_long_edges(patch: &mut Patch) {
         for e in 0..patch.twins.len() as u32 {
             if squared_excess(patch, e) > limit {
                 if let Some(vertex) = near_middle(patch, e) {
-                    patch.split(e, vertex);
+                    patch.split(e, vertex)?;
                 }
             }
         }
     }
+    Ok(())
 }
 
 /// Square of an edge's length over the one wanted; 0 for an edge that may not be split, and for

@@ -8,7 +8,7 @@ use super::blocks::Surface;
 use super::patch::Vertex;
 use super::reference::Reference;
 use super::split::middle_anyway;
-use crate::error::{reserved, zeros, Error, Result};
+use crate::error::{check_count, filled, reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::halfedge::{ends, twins_if_wound, NONE};
 
@@ -22,8 +22,9 @@ pub(super) fn subdivide(
     execution: &mut Execution,
 ) -> Result<Surface> {
     let old = &surface.triangles;
+    check_count("triangles", 4 * old.len(), 3)?;
     let count = surface.vertices.len();
-    let twins = twins_if_wound(old, count);
+    let twins = twins_if_wound(old, count)?;
     // The edge that each half-edge belongs to, numbered by the first of its half-edges.
     let mut edge: Vec<u32> = zeros(twins.len())?;
     let mut firsts: Vec<u32> = reserved(twins.len())?;
@@ -35,7 +36,7 @@ pub(super) fn subdivide(
             firsts.len() as u32 - 1
         };
     }
-    let mut middles: Vec<Vertex> = zeros(firsts.len())?;
+    let mut middles = filled(Vertex::default(), firsts.len())?;
     execution.fill(&mut middles, PIECE, |piece, out| {
         for (i, vertex) in out.iter_mut().enumerate() {
             let e = firsts[piece * PIECE + i];
@@ -56,9 +57,6 @@ pub(super) fn subdivide(
     let mut vertices = reserved(count + middles.len())?;
     vertices.extend_from_slice(&surface.vertices);
     vertices.extend(middles);
-    if triangles.len() > u32::MAX as usize / 8 {
-        return Err(Error::OutOfMemory(triangles.len().saturating_mul(12)));
-    }
     Ok(Surface {
         vertices,
         triangles,

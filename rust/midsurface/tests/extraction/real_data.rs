@@ -28,7 +28,7 @@ fn check(name: &str, least: AtLeast) {
     assert_eq!(labels.len(), grid.dimensions.iter().product::<usize>());
     // Sound, too: that is asserted for every mesh.
     let (mesh, _) = extract_all(&labels, grid);
-    let quality = mesh.quality();
+    let quality = mesh.quality().unwrap();
     let told = format!("{name}: {} points, {quality:?}", mesh.points.len());
     println!("{told}");
     assert!((100.0 * quality.mean).round() >= least.quality, "{told}");

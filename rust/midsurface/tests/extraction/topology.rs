@@ -238,7 +238,7 @@ fn the_mitochondrion_is_two_membranes() {
             .count();
         assert!(triangles > 3000, "{triangles} triangles of label {label}");
     }
-    let quality = mesh.quality();
+    let quality = mesh.quality().unwrap();
     assert!(
         quality.mean > 0.8 && quality.mean_smallest_angle > 42.0,
         "{quality:?}"

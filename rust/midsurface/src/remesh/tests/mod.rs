@@ -17,18 +17,18 @@ fn run(shape: &Shape, edge_length: f64, threads: usize) -> Remeshed {
 
 /// Components, Euler number, boundary loops.
 fn topology(points: &[Vec3], triangles: &[[u32; 3]]) -> [i64; 3] {
-    let mut sets = DisjointSets::new(points.len());
+    let mut sets = DisjointSets::new(points.len()).unwrap();
     for t in triangles {
         sets.join(t[0] as usize, t[1] as usize);
         sets.join(t[0] as usize, t[2] as usize);
     }
     let components = (0..points.len()).filter(|&p| sets.find(p) == p).count();
-    let twins = twins_if_wound(triangles, points.len());
+    let twins = twins_if_wound(triangles, points.len()).unwrap();
     let open: Vec<(u32, u32)> = (0..twins.len() as u32)
         .filter(|&e| twins[e as usize] == NONE)
         .map(|e| ends(triangles, e))
         .collect();
-    let mut rims = DisjointSets::new(points.len());
+    let mut rims = DisjointSets::new(points.len()).unwrap();
     open.iter()
         .for_each(|&(a, b)| rims.join(a as usize, b as usize));
     let mut roots: Vec<usize> = open.iter().map(|e| rims.find(e.0 as usize)).collect();
@@ -77,7 +77,7 @@ fn check(shape: &Shape, remeshed: &Remeshed) -> crate::Quality {
         topology(&shape.points, &shape.triangles),
         topology(&remeshed.points, &remeshed.triangles)
     );
-    mesh.quality()
+    mesh.quality().unwrap()
 }
 
 /// Asserts the figures that a smooth surface must reach.
@@ -166,7 +166,7 @@ fn rims_and_corners_stay() {
         let there = |p: &Vec3| [p[0], p[1]] == corner;
         assert!(remeshed.points.iter().any(there), "{corner:?}");
     }
-    let twins = twins_if_wound(&remeshed.triangles, remeshed.points.len());
+    let twins = twins_if_wound(&remeshed.triangles, remeshed.points.len()).unwrap();
     for e in (0..twins.len() as u32).filter(|&e| twins[e as usize] == NONE) {
         let [x, y, _] = remeshed.points[ends(&remeshed.triangles, e).0 as usize];
         let off = [x, 30.0 - x, y, 40.0 - y].map(f64::abs);
@@ -177,7 +177,7 @@ fn rims_and_corners_stay() {
 #[test]
 fn origins_lead_back_to_the_input() {
     let shape = sphere(15.0, 16).with(rectangle(20, 20, 0.0, 17));
-    let mut sets = DisjointSets::new(shape.points.len());
+    let mut sets = DisjointSets::new(shape.points.len()).unwrap();
     for t in &shape.triangles {
         sets.join(t[0] as usize, t[1] as usize);
         sets.join(t[0] as usize, t[2] as usize);
