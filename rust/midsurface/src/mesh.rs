@@ -17,7 +17,8 @@ use crate::terraces::{self, flatten_terraces, LineOfPoint};
 use crate::zipper::Zipped;
 
 /// Passes over the mesh that [`Mesh::assemble`] makes, for its progress.
-pub(crate) const PASSES: usize = 2 + manifold::PASSES + 2 * NORMAL_PASSES + terraces::PASSES;
+pub(crate) const PASSES: usize =
+    2 + manifold::PASSES + 2 * NORMAL_PASSES + terraces::OF_LINES.passes();
 
 /// A triangle mesh: a 2-manifold with boundary, consistently wound in each connected piece.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -108,7 +109,7 @@ impl Mesh {
             (&surface.triangles, &fans),
             &rough,
             &lines,
-            terraces::PASSBAND,
+            terraces::OF_LINES,
             execution,
         )?;
         let fans = match drop_degenerate(&mut surface, |p| p.map(|v| v as f32), execution)? {

@@ -23,7 +23,7 @@ use crate::interpolation::Sampler;
 use crate::manifold::{self, make_manifold, Surface};
 use crate::mask::{self, Mask};
 use crate::mesh::{drop_degenerate, turn_outward, Mesh};
-use crate::midway::{self, move_midway, Label};
+use crate::midway::{self, move_closer, move_midway, Label};
 use crate::normals::{normals, NORMAL_PASSES};
 use crate::profile::Profile;
 use crate::ray::Inside;
@@ -34,7 +34,7 @@ use crate::scraps::drop_scraps;
 use crate::self_intersections::{self, remove_self_intersections};
 use crate::settle::settle;
 use crate::sheet::Sheet;
-use crate::terraces::{self, flatten_terraces, LineOfPoint};
+use crate::terraces::{flatten_terraces, LineOfPoint, LowPass};
 use crate::thickness::View;
 use crate::trim::trim;
 use crate::weld::weld;
@@ -47,10 +47,13 @@ const FARTHEST: f64 = 2.0;
 const SETTLINGS: usize = 4;
 /// Rings of voxels that sheets are extended by, at most.
 const RINGS: u8 = 12;
-/// End of the passband of the low-pass that flattens terraces: shorter waves than for lines, since
-/// midway points have fewer terraces, and membranes have bends of their own. Terraces of slices that
-/// lie farther apart are longer: it is divided by the coarsest spacing.
-const PASSBAND: f64 = 0.2;
+/// The filter that flattens terraces: shorter waves than for lines, since midway points have fewer
+/// terraces, and gently, since membranes have bends of their own. Terraces of slices that lie farther
+/// apart are longer: the passband is divided by the coarsest spacing.
+const LOW_PASS: LowPass = LowPass {
+    passband: 0.1,
+    degree: 7,
+};
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 
@@ -82,10 +85,9 @@ pub(crate) fn ridge_surface(
         batch,
         distance: &distance,
         mask: &mask,
-        fraction: &fraction,
         h,
     };
-    move_midway(&label, &mut surface, execution)?;
+    move_midway(&label, &mut surface, &fraction, execution)?;
     turn_outward(&surface.points, &mut surface.triangles)?;
     execution.stage("Remeshing", 0.65, 0.94, 1)?;
     let wanted = match edge_length {
@@ -103,13 +105,18 @@ pub(crate) fn ridge_surface(
         triangles: remeshed.triangles,
     };
     keep_within(grid, &mut found.points);
-    let passes = 1 + 2 * NORMAL_PASSES + terraces::PASSES + self_intersections::PASSES;
+    let passes = 1
+        + 3 * NORMAL_PASSES
+        + LOW_PASS.passes()
+        + midway::CLOSER_PASSES
+        + self_intersections::PASSES;
     execution.stage("Flattening terraces", 0.94, 1.0, passes)?;
     drop_degenerate(&mut found, in_mesh(grid), execution)?;
     let mut found = found.compact()?;
     let fans = Fans::new(&found.triangles, found.points.len())?;
-    let passband = PASSBAND / h.iter().copied().fold(1.0, f64::max);
-    flatten(&mut found, &fans, (wanted, passband), execution)?;
+    flatten(&mut found, &fans, (wanted, h), execution)?;
+    let rough = normals(&found.points, &found.triangles, &fans, execution)?;
+    move_closer(&label, &mut found, &rough, execution)?;
     let component = |part: u32| parts[part as usize].component;
     let fans = remove_self_intersections(&mut found, fans, &component, wanted, execution)?;
     keep_within(grid, &mut found.points);
@@ -133,7 +140,7 @@ pub(crate) fn ridge_surface(
 fn flatten(
     surface: &mut Surface,
     fans: &Fans,
-    (edge, passband): (f64, f64),
+    (edge, h): (f64, Vec3),
     execution: &mut Execution,
 ) -> Result<()> {
     let point = LineOfPoint {
@@ -148,7 +155,10 @@ fn flatten(
         (&surface.triangles, fans),
         &normals,
         &points,
-        passband,
+        LowPass {
+            passband: LOW_PASS.passband / h.iter().copied().fold(1.0, f64::max),
+            ..LOW_PASS
+        },
         execution,
     )
 }

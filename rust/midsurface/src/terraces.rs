@@ -15,11 +15,20 @@ use crate::execution::Execution;
 use crate::grid::{along, dot, length, sub, unit, Vec3};
 use crate::halfedge::{self, ends, previous, Fans, NONE};
 
-/// End of the passband among K's eigenvalues, 0 to 2, for lines in slices: waves of about fourteen
-/// edges.
-pub(crate) const PASSBAND: f64 = 0.05;
-/// Degree of the polynomial.
-const DEGREE: usize = 24;
+/// A windowed-sinc filter.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LowPass {
+    /// End of the passband among K's eigenvalues, 0 to 2.
+    pub passband: f64,
+    /// Degree of the polynomial: the higher, the steeper is the passband's end.
+    pub degree: usize,
+}
+
+/// The filter for lines in slices: it takes waves of less than about fourteen edges.
+pub(crate) const OF_LINES: LowPass = LowPass {
+    passband: 0.05,
+    degree: 24,
+};
 /// No point moves by more than this share of its line's edges: nearly half a voxel.
 const MOST: f64 = 0.3;
 /// Passes that smooth the normals along which heights are measured.
@@ -30,8 +39,33 @@ const RINGS: u8 = 6;
 const PIECE: usize = 1024;
 /// Passes that finding the neighbours makes.
 const PREPARING: usize = halfedge::TWIN_PASSES + buckets::PASSES;
-/// Passes over the points that [`flatten_terraces`] makes, for its progress.
-pub(crate) const PASSES: usize = 2 * DEGREE + SMOOTH_NORMALS + 2 + PREPARING;
+
+impl LowPass {
+    /// Passes over the points that [`flatten_terraces`] makes, for its progress.
+    pub const fn passes(&self) -> usize {
+        2 * self.degree + SMOOTH_NORMALS + 2 + PREPARING
+    }
+
+    /// Coefficients of the polynomial over Chebyshev's, under a Hamming window, summing to 1 so that
+    /// flat stays flat.
+    fn weights(&self) -> Vec<f64> {
+        use std::f64::consts::PI;
+        let theta = (1.0 - 0.5 * self.passband).acos();
+        let mut weights: Vec<f64> = (0..=self.degree)
+            .map(|n| {
+                let window = 0.54 + 0.46 * (n as f64 * PI / (self.degree + 1) as f64).cos();
+                let sinc = match n {
+                    0 => theta / PI,
+                    n => 2.0 * (n as f64 * theta).sin() / (n as f64 * PI),
+                };
+                window * sinc
+            })
+            .collect();
+        let sum: f64 = weights.iter().sum();
+        weights.iter_mut().for_each(|w| *w /= sum);
+        weights
+    }
+}
 
 /// What the filter knows of a point and the line that it is on.
 #[derive(Debug, Clone, Copy, Default)]
@@ -62,20 +96,14 @@ pub(crate) fn flatten_terraces(
     (triangles, fans): (&[[u32; 3]], &Fans),
     normals: &[Vec3],
     lines: &[LineOfPoint],
-    passband: f64,
+    filter: LowPass,
     execution: &mut Execution,
 ) -> Result<()> {
     if triangles.is_empty() {
         return Ok(());
     }
     let neighbours = Neighbours::new((triangles, fans), points, lines, execution)?;
-    let moves = moves(
-        points,
-        normals,
-        &neighbours,
-        &sinc_weights(passband),
-        execution,
-    )?;
+    let moves = moves(points, normals, &neighbours, &filter.weights(), execution)?;
     let rings = neighbours.rings(lines)?;
     for (i, point) in points.iter_mut().enumerate() {
         let way = if neighbours.boundary[i] {
@@ -173,26 +201,6 @@ fn low_pass(
         }
     }
     Ok(sum)
-}
-
-/// Coefficients of the polynomial over Chebyshev's, under a Hamming window, summing to 1 so that
-/// flat stays flat.
-fn sinc_weights(passband: f64) -> Vec<f64> {
-    use std::f64::consts::PI;
-    let theta = (1.0 - 0.5 * passband).acos();
-    let mut weights: Vec<f64> = (0..=DEGREE)
-        .map(|n| {
-            let window = 0.54 + 0.46 * (n as f64 * PI / (DEGREE + 1) as f64).cos();
-            let sinc = match n {
-                0 => theta / PI,
-                n => 2.0 * (n as f64 * theta).sin() / (n as f64 * PI),
-            };
-            window * sinc
-        })
-        .collect();
-    let sum: f64 = weights.iter().sum();
-    weights.iter_mut().for_each(|w| *w /= sum);
-    weights
 }
 
 impl Neighbours {
