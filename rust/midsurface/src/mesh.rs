@@ -296,6 +296,8 @@ fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Result<Vec<LineOfPo
             known[p] = LineOfPoint {
                 edge,
                 across,
+                // The end of an open line may lie on the border of the volume.
+                stays: !line.closed,
                 room: polylines.border_distance[p].into(),
                 at_end: slices[&line.component].contains(&line.slice),
             };

@@ -14,7 +14,7 @@ use crate::components::Part;
 use crate::contour;
 use crate::crest::{self, core_sheets};
 use crate::distance;
-use crate::error::{check_count, collected, extend, filled, push, zeros, Result};
+use crate::error::{check_count, collected, extend, push, zeros, Result};
 use crate::execution::Execution;
 use crate::extension;
 use crate::grid::{Grid, Vec3};
@@ -114,7 +114,7 @@ pub(crate) fn ridge_surface(
     drop_degenerate(&mut found, in_mesh(grid), execution)?;
     let mut found = found.compact()?;
     let fans = Fans::new(&found.triangles, found.points.len())?;
-    flatten(&mut found, &fans, (wanted, h), execution)?;
+    flatten(&mut found, &fans, (wanted, grid), execution)?;
     let rough = normals(&found.points, &found.triangles, &fans, execution)?;
     move_closer(&label, &mut found, &rough, execution)?;
     let component = |part: u32| parts[part as usize].component;
@@ -136,19 +136,29 @@ pub(crate) fn ridge_surface(
     )
 }
 
-/// Removes the terraces of sheets nearly parallel to a lattice plane; rims stay.
+/// Removes the terraces of sheets nearly parallel to a lattice plane; rims move along their normals,
+/// too, but on the border of the volume only within it.
 fn flatten(
     surface: &mut Surface,
     fans: &Fans,
-    (edge, h): (f64, Vec3),
+    (edge, grid): (f64, &Grid),
     execution: &mut Execution,
 ) -> Result<()> {
-    let point = LineOfPoint {
-        edge,
-        room: f64::INFINITY,
-        ..LineOfPoint::default()
+    let h = grid.work_spacing();
+    let point = |p: &Vec3| {
+        let last = |a: usize| (grid.dimensions[a] as f64 - 1.0) * h[a];
+        let on_border: Vec3 =
+            std::array::from_fn(|a| f64::from(u8::from(p[a] <= 0.0 || p[a] >= last(a))));
+        let borders: f64 = on_border.iter().sum();
+        LineOfPoint {
+            edge,
+            across: on_border,
+            stays: borders > 1.0,
+            room: f64::INFINITY,
+            at_end: false,
+        }
     };
-    let points = filled(point, surface.points.len())?;
+    let points = collected(surface.points.iter().map(point))?;
     let normals = normals(&surface.points, &surface.triangles, fans, execution)?;
     flatten_terraces(
         &mut surface.points,

@@ -72,9 +72,11 @@ impl LowPass {
 pub(crate) struct LineOfPoint {
     /// Mean length of its edges.
     pub edge: f64,
-    /// Unit vector across its plane; zero where it is open. On a boundary a point of a closed line
-    /// moves within that plane, any other stays: it may lie on the border of the volume.
+    /// Unit vector across the plane within which the point moves where it is on a boundary; zero
+    /// where it is free.
     pub across: Vec3,
+    /// Whether the point stays where it is on a boundary.
+    pub stays: bool,
     /// Farthest the point may move, so that it stays in the volume.
     pub room: f64,
     /// Whether it is in its component's first or last slice. Where the surface turns back there, so
@@ -284,7 +286,7 @@ impl Neighbours {
 
     /// Rings of points between each point and one that stays, at most [`RINGS`].
     fn rings(&self, lines: &[LineOfPoint]) -> Result<Vec<u8>> {
-        let stays = |p: usize| self.boundary[p] && lines[p].across == [0.0; 3];
+        let stays = |p: usize| self.boundary[p] && lines[p].stays;
         let mut rings = collected((0..lines.len()).map(|p| if stays(p) { 0 } else { RINGS }))?;
         for ring in 1..RINGS {
             for p in 0..rings.len() {
