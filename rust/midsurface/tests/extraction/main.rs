@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod bad_input;
+mod beyond_32_bits;
 mod chain;
 mod determinism;
 mod fields;
