@@ -126,7 +126,8 @@ pub(crate) fn reserved<T>(length: usize) -> Result<Vec<T>> {
     Ok(buffer)
 }
 
-/// Makes room for so many items more, and for as many again where items come in many small lots.
+/// Makes room for so many items more at least; a vector that grows in many small lots doubles, as
+/// `Vec` itself does.
 pub(crate) fn reserve<T>(items: &mut Vec<T>, more: usize) -> Result<()> {
     items.try_reserve(more).map_err(|_| refused::<T>(more))
 }

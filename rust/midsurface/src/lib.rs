@@ -379,8 +379,9 @@ fn find_ridge_surface(
         ridge_surface::ridge_surface(parts, grid, options.edge_length, &mut mesh, execution)?;
         // One by one: a set made at once would ask for memory for all triangles.
         let mut found = BTreeSet::new();
-        let found_in_a_row = mesh.components[first..].chunk_by(|a, b| a == b);
-        found_in_a_row.for_each(|of_component| _ = found.insert(of_component[0]));
+        for of_component in mesh.components[first..].chunk_by(|a, b| a == b) {
+            found.insert(of_component[0]);
+        }
         for component in parts.chunk_by(|a, b| a.component == b.component) {
             if !found.contains(&component[0].component) {
                 *findings.without.entry(component[0].label).or_default() += 1;

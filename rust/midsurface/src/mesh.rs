@@ -78,10 +78,9 @@ pub enum InvariantViolation {
     Unchecked,
 }
 
-impl From<Error> for InvariantViolation {
-    fn from(_: Error) -> Self {
-        Self::Unchecked
-    }
+/// What a refusal of memory, the only error of the buffers that checking takes, becomes.
+fn unchecked(_: Error) -> InvariantViolation {
+    InvariantViolation::Unchecked
 }
 
 impl Mesh {
@@ -147,7 +146,7 @@ impl Mesh {
     /// duplicate, degenerate or unused.
     pub fn check_invariants(&self) -> std::result::Result<(), InvariantViolation> {
         self.check_arrays()?;
-        let edges = Edges::new(&self.triangles, self.points.len())?;
+        let edges = Edges::new(&self.triangles, self.points.len()).map_err(unchecked)?;
         for (a, b, group) in edges.groups() {
             match group {
                 [_] => {}
@@ -163,7 +162,7 @@ impl Mesh {
                 _ => return Err(InvariantViolation::NonManifoldEdge(a, b)),
             }
         }
-        self.check_fans(&edges.twins()?)
+        self.check_fans(&edges.twins().map_err(unchecked)?)
     }
 
     /// The points of a half-edge's triangle, ascending.
@@ -191,7 +190,7 @@ impl Mesh {
                 return Err(InvariantViolation::NotFinite(i));
             }
         }
-        let mut used: Vec<bool> = zeros(self.points.len())?;
+        let mut used: Vec<bool> = zeros(self.points.len()).map_err(unchecked)?;
         for (i, triangle) in self.triangles.iter().enumerate() {
             for &p in triangle {
                 *used
@@ -209,14 +208,14 @@ impl Mesh {
 
     /// Every point's corners must hang together through shared edges.
     fn check_fans(&self, twins: &[u32]) -> std::result::Result<(), InvariantViolation> {
-        let mut fans = DisjointSets::new(twins.len())?;
+        let mut fans = DisjointSets::new(twins.len()).map_err(unchecked)?;
         for e in 0..twins.len() as u32 {
             let twin = twins[e as usize];
             if twin != NONE {
                 fans.join(e as usize, crate::halfedge::next(twin) as usize);
             }
         }
-        let mut fan_of = filled(NONE, self.points.len())?;
+        let mut fan_of = filled(NONE, self.points.len()).map_err(unchecked)?;
         for corner in 0..twins.len() {
             let p = self.triangles[corner / 3][corner % 3];
             let fan = fans.find(corner) as u32;

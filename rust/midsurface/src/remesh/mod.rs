@@ -96,9 +96,7 @@ pub(crate) fn remesh(
     let mut surface = start(&reference)?;
     for (number, &longest) in coarse.iter().enumerate() {
         let blocks = Blocks::new(&surface, BLOCK * longest, shift(number), execution)?;
-        surface = blocks.work(&surface, &reference, (2.0, longest), execution, |patch| {
-            improve(patch)
-        })?;
+        surface = blocks.work(&surface, &reference, (2.0, longest), execution, improve)?;
     }
     surface = subdivide(&surface, &reference, execution)?;
     for number in 0..FINE_PASSES {

@@ -15,7 +15,7 @@ use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 
 /// A triangle whose smallest angle is below this sine's (34°) is poor.
 pub(super) const POOR: f64 = 0.56;
-/// Sweeps over all points; what is poor after them stays so.
+/// Sweeps over the poor triangles; what is poor after them stays so.
 const SWEEPS: usize = 3;
 /// Lengths of the steps that are tried, as shares of the edge length wanted.
 const STEPS: [f64; 3] = [0.3, 0.15, 0.07];
