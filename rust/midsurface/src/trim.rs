@@ -7,7 +7,7 @@
 //! fraction rises far enough (hysteresis, as in Canny 1986).
 
 use crate::components::DisjointSets;
-use crate::error::{collected, filled, push, reserved, zeros, Result};
+use crate::error::{check_count, collected, filled, push, reserved, zeros, Result};
 use crate::grid::{along, sub};
 use crate::halfedge::{ends, Edges};
 use crate::manifold::{split_points_among, Surface};
@@ -63,7 +63,10 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
             }
         }
     }
-    surface.triangles = reserved(triangles.len() + mixed.len())?;
+    // A triangle that is cut may leave two.
+    let most = triangles.len() + mixed.len();
+    check_count("triangles", most, 3)?;
+    surface.triangles = reserved(most)?;
     for (t, triangle) in triangles.iter().enumerate() {
         if triangle.iter().all(|&p| side[p as usize] == Side::Kept) {
             surface.triangles.push(*triangle);
