@@ -13,6 +13,22 @@ pub(crate) type Layer = [f32; LAYER];
 /// A value for every voxel of a row along x of a brick.
 pub(crate) type Row = [f32; EDGE];
 
+/// A vector at place i of its entries' layers or rows. Written out, since the `map` of an array is not
+/// always inlined, and a loop with it then takes one voxel at a time.
+#[inline(always)]
+pub(crate) fn vector_at<L: AsRef<[f32]>>(entries: &[L; 3], i: usize) -> [f32; 3] {
+    let [x, y, z] = entries;
+    [x.as_ref()[i], y.as_ref()[i], z.as_ref()[i]]
+}
+
+/// A symmetric matrix at place i of its entries' layers or rows, as [`vector_at`].
+#[inline(always)]
+pub(crate) fn matrix_at<L: AsRef<[f32]>>(entries: &[L; 6], i: usize) -> Symmetric<f32> {
+    let [xx, yy, zz, xy, xz, yz] = entries;
+    let [xx, yy, zz] = [xx.as_ref()[i], yy.as_ref()[i], zz.as_ref()[i]];
+    [xx, yy, zz, xy.as_ref()[i], xz.as_ref()[i], yz.as_ref()[i]]
+}
+
 /// The voxels of a brick and those around it: shape (10, 10, 10), x fastest.
 pub(crate) struct Block<T> {
     pub values: [T; SIDE * SIDE * SIDE],

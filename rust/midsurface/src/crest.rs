@@ -7,7 +7,7 @@
 //! another sheet joins, or the label ends in a curve. The sheets of the other voxels follow from
 //! those of their core neighbours (`extension.rs`).
 
-use crate::block::Block;
+use crate::block::{matrix_at, vector_at, Block};
 use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
 use crate::eigen::{eigenvalues, eigenvector};
 use crate::error::{zeros, Result};
@@ -202,24 +202,23 @@ fn find_tensors(
         let mut sources = [[0.0; LAYER]; 3];
         for i in 0..LAYER {
             // Relative to σ, so that a thick sheet does not outshout a thin one beside it.
-            let hessian = layer.hessian.each_ref().map(|entry| entry[i]);
-            let e = source(hessian, distance[i] / layer.sigma[i]);
+            let e = source(matrix_at(&layer.hessian, i), distance[i] / layer.sigma[i]);
             for (sources, v) in sources.iter_mut().zip(e) {
                 sources[i] = v;
             }
         }
         if let Some(border) = border {
             for i in 0..LAYER {
-                if border.cuts(z * LAYER + i, sources.each_ref().map(|e| e[i])) {
+                if border.cuts(z * LAYER + i, vector_at(&sources, i)) {
                     sources.iter_mut().for_each(|e| e[i] = 0.0);
                 }
             }
         }
         let mut products = [[0.0; LAYER]; ENTRIES];
         for i in 0..LAYER {
-            let e = sources.each_ref().map(|e| e[i]);
+            let e = vector_at(&sources, i);
             let trust = trust(layer, i, e);
-            let e = e.map(|v| v * trust);
+            let e = [e[0] * trust, e[1] * trust, e[2] * trust];
             let zz = e[2] * e[2];
             products[0][i] = e[0] * e[0] - zz;
             products[1][i] = e[1] * e[1] - zz;
@@ -237,7 +236,7 @@ fn find_tensors(
 #[inline(always)]
 fn trust(layer: &Derivatives, i: usize, e: [f32; 3]) -> f32 {
     let length = dot(e, e).sqrt().max(f32::MIN_POSITIVE);
-    let n = e.map(|v| v / length);
+    let n = [e[0] / length, e[1] / length, e[2] / length];
     let (offset, tangential, bent) = step(layer, i, n);
     let share = tangential.max(offset.abs()) / (TANGENTIAL * layer.sigma[i]);
     let clear = 1.0 - (bent / BENT).max(0.0);
@@ -292,8 +291,8 @@ fn find_sheets(
         let tensor: [&[f32]; ENTRIES] = std::array::from_fn(|k| &tensors[entry(k, z)]);
         let mut found = [[0.0; LAYER]; 4];
         for i in 0..LAYER {
-            let [xx, yy, xy, xz, yz] = tensor.map(|entry| entry[i]);
-            let tensor = [xx, yy, 0.0, xy, xz, yz];
+            let [xx, yy, xy, xz, yz] = tensor;
+            let tensor = [xx[i], yy[i], 0.0, xy[i], xz[i], yz[i]];
             let n = eigenvector(tensor, eigenvalues(tensor)[2]);
             let (offset, tangential, bent) = step(layer, i, n);
             let most = (TRUSTED as f32 * layer.sigma[i] + 0.5).min(farthest);
@@ -306,7 +305,7 @@ fn find_sheets(
             }
         }
         for (i, sheet) in sheets[z * LAYER..][..LAYER].iter_mut().enumerate() {
-            *sheet = found.each_ref().map(|found| found[i]);
+            *sheet = [found[0][i], found[1][i], found[2][i], found[3][i]];
         }
     }
 }
@@ -316,15 +315,19 @@ fn find_sheets(
 /// no numbers where the profile has no crest along n.
 #[inline(always)]
 fn step(layer: &Derivatives, i: usize, n: [f32; 3]) -> (f32, f32, f32) {
-    let g = layer.gradient.each_ref().map(|g| g[i]);
-    let [xx, yy, zz, xy, xz, yz] = layer.hessian.each_ref().map(|h| h[i]);
+    let g = vector_at(&layer.gradient, i);
+    let [xx, yy, zz, xy, xz, yz] = matrix_at(&layer.hessian, i);
     let bent = [
         xx * n[0] + xy * n[1] + xz * n[2],
         xy * n[0] + yy * n[1] + yz * n[2],
         xz * n[0] + yz * n[1] + zz * n[2],
     ];
     let (slope, curvature) = (dot(g, n), dot(n, bent));
-    let within: [f32; 3] = std::array::from_fn(|k| g[k] - slope * n[k]);
+    let within = [
+        g[0] - slope * n[0],
+        g[1] - slope * n[1],
+        g[2] - slope * n[2],
+    ];
     if curvature < 0.0 {
         // What is left of the trace is the curvature within the sheet, both directions together.
         let bend = (xx + yy + zz - curvature) / curvature;

@@ -1,5 +1,6 @@
 //! Eigenvalues and eigenvectors of symmetric 3 × 3 matrices, without a branch, so that loops over
-//! voxels run side by side.
+//! voxels run side by side. For the same end nothing here takes an array's `map`, which is not always
+//! inlined.
 
 use num_traits::Float;
 
@@ -20,11 +21,13 @@ pub(crate) fn eigenvalues<T: Real>([xx, yy, zz, xy, xz, yz]: Symmetric<T>) -> [T
     let off_diagonal = xy * xy + xz * xz + yz * yz;
     let p = ((a * a + b * b + c * c + number(2.0) * off_diagonal) / number(6.0)).sqrt();
     let scale = larger(p, T::min_positive_value()).recip();
-    let [a, b, c, xy, xz, yz] = [a, b, c, xy, xz, yz].map(|v| v * scale);
+    let [a, b, c] = [a * scale, b * scale, c * scale];
+    let [xy, xz, yz] = [xy * scale, xz * scale, yz * scale];
     let determinant = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
     let r = number(0.5) * determinant;
     let (smallest, largest) = (-largest_root(-r), largest_root(r));
-    [smallest, -(smallest + largest), largest].map(|t| mean + p * t)
+    let middle = -(smallest + largest);
+    [mean + p * smallest, mean + p * middle, mean + p * largest]
 }
 
 /// The largest root of t³ − 3 t = 2 r, which is 2 cos(acos(r) / 3), for r from −1 to 1.
@@ -55,10 +58,16 @@ pub(crate) fn eigenvector<T: Real>([xx, yy, zz, xy, xz, yz]: Symmetric<T>, value
     let mut longest = cross(rows[0], rows[1]);
     for other in [cross(rows[0], rows[2]), cross(rows[1], rows[2])] {
         let is_longer = dot(other, other) > dot(longest, longest);
-        longest = std::array::from_fn(|k| if is_longer { other[k] } else { longest[k] });
+        let longer = |k: usize| if is_longer { other[k] } else { longest[k] };
+        longest = [longer(0), longer(1), longer(2)];
     }
     let squared = dot(longest, longest);
-    longest.map(|v| v / larger(squared, T::min_positive_value()).sqrt())
+    let length = larger(squared, T::min_positive_value()).sqrt();
+    [
+        longest[0] / length,
+        longest[1] / length,
+        longest[2] / length,
+    ]
 }
 
 #[inline(always)]

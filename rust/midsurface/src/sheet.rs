@@ -10,7 +10,7 @@
 //! f across the sheet is a Gaussian, as it is for thin sheets. Since only the component along n
 //! counts, a slope of f within the sheet, as it is near every rim, does not pull the crest aside.
 
-use crate::block::{row, Block, Row, SIDE};
+use crate::block::{matrix_at, row, vector_at, Block, Row, SIDE};
 use crate::bricks::{Batch, BRICK, EDGE};
 use crate::eigen::{eigenvalues, eigenvector, Symmetric};
 use crate::error::Result;
@@ -119,7 +119,7 @@ fn sources_of_brick(ridge: &Block<f32>, distance: &[f32], h: Vec3) -> [[f32; BRI
         let (_, hessian) = ridge.row_derivatives(row % EDGE, row / EDGE, h);
         let mut found: [Row; 3] = [[0.0; EDGE]; 3];
         for i in 0..EDGE {
-            let e = source(hessian.each_ref().map(|entry| entry[i]), distance[i]);
+            let e = source(matrix_at(&hessian, i), distance[i]);
             for (found, v) in found.iter_mut().zip(e) {
                 found[i] = v;
             }
@@ -155,7 +155,7 @@ pub(crate) fn source(hessian: Symmetric<f32>, distance: f32) -> [f32; 3] {
         0.0
     };
     let weight = clear.sqrt() * distance * distance;
-    e.map(|v| v * weight)
+    [e[0] * weight, e[1] * weight, e[2] * weight]
 }
 
 /// The sheets of a brick's voxels from the entries of the smoothed tensor, where the label is `near`.
@@ -183,12 +183,13 @@ fn sheets_of_brick(
         }
         let mut found: [Row; 4] = [[0.0; EDGE]; 4];
         for i in 0..EDGE {
-            let [xx, yy, xy, xz, yz] = entries.each_ref().map(|entry| entry[i]);
+            let [xx, yy, xy, xz, yz] = entries;
+            let [xx, yy, xy, xz, yz] = [xx[i], yy[i], xy[i], xz[i], yz[i]];
             let sheet = sheet(
                 [xx, yy, 0.0, xy, xz, yz],
                 value[i],
-                gradient.each_ref().map(|g| g[i]),
-                hessian.each_ref().map(|h| h[i]),
+                vector_at(&gradient, i),
+                matrix_at(&hessian, i),
             );
             let known = (near[i] > 0.0) & (sheet[3].abs() <= most);
             for (found, v) in found.iter_mut().zip(sheet) {
@@ -196,7 +197,7 @@ fn sheets_of_brick(
             }
         }
         for (i, sheet) in sheets[row * EDGE..][..EDGE].iter_mut().enumerate() {
-            *sheet = found.each_ref().map(|found| found[i]);
+            *sheet = [found[0][i], found[1][i], found[2][i], found[3][i]];
         }
     }
     sheets
