@@ -220,11 +220,16 @@ fn find_tensors(
             let trust = trust(layer, i, e);
             let e = [e[0] * trust, e[1] * trust, e[2] * trust];
             let zz = e[2] * e[2];
-            products[0][i] = e[0] * e[0] - zz;
-            products[1][i] = e[1] * e[1] - zz;
-            products[2][i] = e[0] * e[1];
-            products[3][i] = e[0] * e[2];
-            products[4][i] = e[1] * e[2];
+            let own = [
+                e[0] * e[0] - zz,
+                e[1] * e[1] - zz,
+                e[0] * e[1],
+                e[0] * e[2],
+                e[1] * e[2],
+            ];
+            for (products, v) in products.iter_mut().zip(own) {
+                products[i] = v;
+            }
         }
         for (k, product) in products.iter().enumerate() {
             tensors[entry(k, z)].copy_from_slice(product);
