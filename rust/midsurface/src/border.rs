@@ -4,7 +4,7 @@
 //! field leans with it: normals are up to 20° off. They are taken from farther inside instead, along
 //! the sheet, and carried back: n(0) = 2 n(s) − n(2 s), which is right where the sheet bends evenly.
 
-use crate::grid::{along, dot, length, round, unit, Vec3};
+use crate::grid::{along, dot, last_voxel, length, round, unit, Vec3};
 use crate::interpolation::Sampler;
 use crate::sheet::{self, Sheet};
 
@@ -55,13 +55,13 @@ fn turned(n: Vec3, like: Vec3) -> Vec3 {
 
 /// The way along the sheet to where no border is near; `None` where none is near here.
 fn inward(distance: &Sampler, p: Vec3, normal: Vec3, thickness: f64) -> Option<Vec3> {
+    let last = last_voxel(distance.directory.dimensions, distance.h);
     let wanted: Vec3 = std::array::from_fn(|a| {
-        let last = (distance.directory.dimensions[a] - 1) as f64 * distance.h[a];
-        let missing = TRUSTED * thickness - p[a].min(last - p[a]);
+        let missing = TRUSTED * thickness - p[a].min(last[a] - p[a]);
         if missing <= 0.0 || normal[a].abs() < UPRIGHT {
             0.0
         } else {
-            missing.copysign(last - 2.0 * p[a])
+            missing.copysign(last[a] - 2.0 * p[a])
         }
     });
     let way = along(wanted, -dot(wanted, normal), normal);

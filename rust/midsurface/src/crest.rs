@@ -12,7 +12,7 @@ use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
 use crate::eigen::{eigenvalues, eigenvector};
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{dot as dot3, Vec3};
+use crate::grid::{dot as dot3, last_voxel, Vec3};
 use crate::profile::{Derivatives, Profile};
 use crate::separable::{self, smooth_some, Kernel};
 use crate::sheet::{dot, source, unshrink, Sheet, ENTRIES, TRUSTED};
@@ -127,10 +127,10 @@ impl<'a> Border<'a> {
         h: Vec3,
     ) -> Option<Self> {
         let (directory, place) = batch.brick(brick);
+        let last = last_voxel(directory.dimensions, h);
         let is_near = (0..3).any(|a| {
             let first = (place[a] * EDGE) as f64 * h[a];
-            let last = (directory.dimensions[a] as f64 - 1.0) * h[a];
-            first.min(last - first - EDGE as f64 * h[a]) < f64::from(4.0 * reach)
+            first.min(last[a] - first - EDGE as f64 * h[a]) < f64::from(4.0 * reach)
         });
         is_near.then_some(Self {
             directory,
@@ -152,12 +152,12 @@ impl<'a> Border<'a> {
         let length = dot3(n, n).sqrt();
         let n = n.map(|v| v / length.max(1e-12));
         let p: Vec3 = std::array::from_fn(|a| (place[a] * EDGE + within[a]) as f64 * self.h[a]);
+        let last = last_voxel(directory.dimensions, self.h);
         (0..3).any(|a| {
-            let last = (directory.dimensions[a] as f64 - 1.0) * self.h[a];
-            let (to_border, out) = if p[a] < last - p[a] {
+            let (to_border, out) = if p[a] < last[a] - p[a] {
                 (p[a], -1.0)
             } else {
-                (last - p[a], 1.0)
+                (last[a] - p[a], 1.0)
             };
             if to_border >= f64::from(self.reach) * n[a].abs() {
                 return false;

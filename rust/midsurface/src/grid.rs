@@ -124,6 +124,12 @@ impl Grid {
     }
 }
 
+/// The last voxel of a volume, whose first one is the origin, in units of `h`.
+pub(crate) fn last_voxel(dimensions: [usize; 3], h: Vec3) -> Vec3 {
+    let last = |a: usize| (dimensions[a] - 1) as f64 * h[a];
+    [last(0), last(1), last(2)]
+}
+
 /// The largest coordinate of all points, whichever its sign.
 pub(crate) fn farthest(points: &[Vec3]) -> f64 {
     let coordinates = points.iter().flatten();

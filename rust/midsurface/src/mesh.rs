@@ -13,7 +13,7 @@ use crate::halfedge::{Edges, Fans, NONE};
 use crate::manifold::{self, make_manifold, Surface};
 use crate::normals::{normals, NORMAL_PASSES};
 use crate::polylines::Polylines;
-use crate::terraces::{self, flatten_terraces, LineOfPoint};
+use crate::terraces::{self, flatten_terraces, LineOfPoint, OnBoundary};
 use crate::zipper::Zipped;
 
 /// Passes over the mesh that [`Mesh::assemble`] makes, for its progress.
@@ -286,17 +286,17 @@ fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Result<Vec<LineOfPo
         let range = line.first..line.first + line.count;
         let points = &polylines.points[range.clone()];
         let edge = polylines.mean_edge(i..i + 1);
-        let across = if line.closed {
-            unit(area(points))
+        let across = unit(area(points));
+        let on_boundary = if line.closed && across != [0.0; 3] {
+            OnBoundary::Within(across)
         } else {
-            [0.0; 3]
+            // The end of an open line may lie on the border of the volume.
+            OnBoundary::Stays
         };
         for p in range {
             known[p] = LineOfPoint {
                 edge,
-                across,
-                // The end of an open line may lie on the border of the volume.
-                stays: !line.closed,
+                on_boundary,
                 room: polylines.border_distance[p].into(),
                 at_end: slices[&line.component].contains(&line.slice),
             };

@@ -8,13 +8,14 @@
 //!
 //! The finished mesh takes one more step: what a point alone sees is noise more than it is shape, so
 //! it goes a small share of that way, as a Wiener filter would have it. Being off the middle falls in
-//! proportion to that share, while the normals' noise, which adds in squares, hardly rises.
+//! proportion to that share. Normals pay for it: on the phantoms their mean error is 2.0° in place of
+//! 1.3°, and 2.5° in place of 1.8° with noise.
 
 use crate::bricks::Batch;
 use crate::buckets::{self, Buckets};
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, dot, Vec3};
+use crate::grid::{along, dot, last_voxel, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::Surface;
@@ -70,26 +71,33 @@ pub(crate) struct Label<'a> {
 }
 
 impl Label<'_> {
-    /// How far along the normal the middle is from a point of a part, where both faces are seen no
-    /// farther off than `most`.
-    fn to_middle(&self, part: u32, point: Vec3, normal: Vec3, most: f64) -> Option<f64> {
-        let distance = Sampler {
+    /// The distance to the outside within a part.
+    fn distance(&self, part: u32) -> Sampler<'_> {
+        Sampler {
             directory: &self.batch.directories[part as usize],
             field: self.distance,
             h: self.h,
-        };
-        let mask = self.mask;
-        let view = View::new(&Inside { distance, mask }, point, normal);
+        }
+    }
+
+    /// What a point of a part sees along its normal.
+    pub fn view(&self, part: u32, point: Vec3, normal: Vec3) -> View {
+        let (distance, mask) = (self.distance(part), self.mask);
+        View::new(&Inside { distance, mask }, point, normal)
+    }
+
+    /// How far along the normal the middle is from a point of a part, where both faces are seen no
+    /// farther off than `most`.
+    fn to_middle(&self, part: u32, point: Vec3, normal: Vec3, most: f64) -> Option<f64> {
+        let view = self.view(part, point, normal);
         let off = view.to_middle.filter(|off| off.abs() <= most)?;
-        sees_faces(&distance, point, &view, off).then_some(off)
+        sees_faces(&self.distance(part), point, &view, off).then_some(off)
     }
 
     /// The last voxel of the volume, work coordinates.
     fn last(&self) -> Vec3 {
         let directory = self.batch.directories.first();
-        std::array::from_fn(|a| {
-            directory.map_or(0.0, |d| (d.dimensions[a] as f64 - 1.0) * self.h[a])
-        })
+        directory.map_or([0.0; 3], |d| last_voxel(d.dimensions, self.h))
     }
 }
 

@@ -13,7 +13,7 @@ use crate::components::Part;
 use crate::ends::{ends_on_border, put_on_border, Line};
 use crate::error::{collected, extend, push, Result};
 use crate::execution::Execution;
-use crate::grid::{Grid, Vec3};
+use crate::grid::{last_voxel, Grid, Vec3};
 use crate::interpolation::Sampler;
 use crate::ray::Inside;
 use crate::resample::{arc_length, distance, resample};
@@ -340,7 +340,8 @@ fn append(
     grid: &Grid,
 ) -> Result<()> {
     let h = grid.work_spacing();
-    let across = |p: &Point, a: usize| p[a].min((grid.dimensions[a] - 1) as f64 * h[a] - p[a]);
+    let last = last_voxel(grid.dimensions, h);
+    let across = |p: &Point, a: usize| p[a].min(last[a] - p[a]);
     for line in found.lines {
         let polyline = Polyline {
             first: polylines.points.len(),

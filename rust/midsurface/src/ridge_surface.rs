@@ -5,7 +5,8 @@
 //! beyond the rims (`extension.rs`), a surface through them (`contour.rs`), wound the same way
 //! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
 //! (`weld.rs`), moved midway between both faces (`midway.rs`), remeshed (`remesh`), rid of terraces
-//! (`terraces.rs`) and of self-intersections (`self_intersections.rs`). How much of the progress a
+//! (`terraces.rs`), moved a last little step (`midway.rs`) and rid of self-intersections
+//! (`self_intersections.rs`). How much of the progress a
 //! stage is given is how long it took on the membranes of real cells.
 
 use crate::bending;
@@ -17,7 +18,7 @@ use crate::distance;
 use crate::error::{check_count, collected, extend, push, zeros, Result};
 use crate::execution::Execution;
 use crate::extension;
-use crate::grid::{Grid, Vec3};
+use crate::grid::{last_voxel, Grid, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::manifold::{self, make_manifold, Surface};
@@ -26,7 +27,6 @@ use crate::mesh::{drop_degenerate, turn_outward, Mesh};
 use crate::midway::{self, move_closer, move_midway, Label};
 use crate::normals::{normals, NORMAL_PASSES};
 use crate::profile::Profile;
-use crate::ray::Inside;
 use crate::remesh::remesh;
 use crate::rim::{self, sheet_fraction};
 use crate::scale::{self, HalfThickness};
@@ -34,8 +34,7 @@ use crate::scraps::drop_scraps;
 use crate::self_intersections::{self, remove_self_intersections};
 use crate::settle::settle;
 use crate::sheet::Sheet;
-use crate::terraces::{flatten_terraces, LineOfPoint, LowPass};
-use crate::thickness::View;
+use crate::terraces::{flatten_terraces, LineOfPoint, LowPass, OnBoundary};
 use crate::trim::trim;
 use crate::weld::weld;
 
@@ -94,17 +93,35 @@ pub(crate) fn ridge_surface(
         0.0 => EDGE_LENGTH,
         length => length / grid.unit(),
     };
+    let mut found = remeshed(surface, wanted, execution)?;
+    keep_within(grid, &mut found.points);
+    let (found, fans) = finish(&label, found, grid, wanted, execution)?;
+    append(&label, grid, (found, fans), mesh, execution)
+}
+
+/// The surface in new triangles; each point's part stays its source.
+fn remeshed(surface: Surface, wanted: f64, execution: &mut Execution) -> Result<Surface> {
     let remeshed = remesh(&surface.points, &surface.triangles, wanted, execution)?;
     let part_of = |origin: u32| {
         let corner = surface.triangles[origin as usize][0];
         surface.source[corner as usize]
     };
-    let mut found = Surface {
+    Ok(Surface {
         source: collected(remeshed.origin.iter().map(|o| part_of(o.triangle)))?,
         points: remeshed.points,
         triangles: remeshed.triangles,
-    };
-    keep_within(grid, &mut found.points);
+    })
+}
+
+/// Rids a remeshed surface of terraces and self-intersections, and moves its points a little closer
+/// to the middle.
+fn finish(
+    label: &Label,
+    mut found: Surface,
+    grid: &Grid,
+    wanted: f64,
+    execution: &mut Execution,
+) -> Result<(Surface, Fans)> {
     let passes = 1
         + 3 * NORMAL_PASSES
         + LOW_PASS.passes()
@@ -116,24 +133,16 @@ pub(crate) fn ridge_surface(
     let fans = Fans::new(&found.triangles, found.points.len())?;
     flatten(&mut found, &fans, (wanted, grid), execution)?;
     let rough = normals(&found.points, &found.triangles, &fans, execution)?;
-    move_closer(&label, &mut found, &rough, execution)?;
-    let component = |part: u32| parts[part as usize].component;
+    move_closer(label, &mut found, &rough, execution)?;
+    let component = |part: u32| label.batch.parts[part as usize].component;
     let fans = remove_self_intersections(&mut found, fans, &component, wanted, execution)?;
     keep_within(grid, &mut found.points);
-    let fans = if drop_degenerate(&mut found, in_mesh(grid), execution)? {
-        found = found.compact()?;
-        Fans::new(&found.triangles, found.points.len())?
-    } else {
-        fans
-    };
-    append(
-        batch,
-        (&distance, &mask),
-        grid,
-        (found, fans),
-        mesh,
-        execution,
-    )
+    if !drop_degenerate(&mut found, in_mesh(grid), execution)? {
+        return Ok((found, fans));
+    }
+    let found = found.compact()?;
+    let fans = Fans::new(&found.triangles, found.points.len())?;
+    Ok((found, fans))
 }
 
 /// Removes the terraces of sheets nearly parallel to a lattice plane; rims move along their normals,
@@ -145,15 +154,19 @@ fn flatten(
     execution: &mut Execution,
 ) -> Result<()> {
     let h = grid.work_spacing();
+    let last = last_voxel(grid.dimensions, h);
     let point = |p: &Vec3| {
-        let last = |a: usize| (grid.dimensions[a] as f64 - 1.0) * h[a];
-        let on_border: Vec3 =
-            std::array::from_fn(|a| f64::from(u8::from(p[a] <= 0.0 || p[a] >= last(a))));
-        let borders: f64 = on_border.iter().sum();
+        let mut borders = (0..3).filter(|&a| p[a] <= 0.0 || p[a] >= last[a]);
+        let on_boundary = match (borders.next(), borders.next()) {
+            (None, _) => OnBoundary::Freely,
+            (Some(a), None) => {
+                OnBoundary::Within(std::array::from_fn(|k| f64::from(u8::from(k == a))))
+            }
+            _ => OnBoundary::Stays,
+        };
         LineOfPoint {
             edge,
-            across: on_border,
-            stays: borders > 1.0,
+            on_boundary,
             room: f64::INFINITY,
             at_end: false,
         }
@@ -175,9 +188,9 @@ fn flatten(
 
 /// Puts points that were moved beyond the border of the volume back onto it.
 fn keep_within(grid: &Grid, points: &mut [Vec3]) {
-    let h = grid.work_spacing();
+    let last = last_voxel(grid.dimensions, grid.work_spacing());
     for p in points {
-        *p = std::array::from_fn(|a| p[a].clamp(0.0, (grid.dimensions[a] as f64 - 1.0) * h[a]));
+        *p = std::array::from_fn(|a| p[a].clamp(0.0, last[a]));
     }
 }
 
@@ -266,26 +279,18 @@ fn values(
 
 /// Appends a finished surface to the mesh, in world coordinates; `source` is the part of each point.
 fn append(
-    batch: &Batch,
-    (distance, mask): (&[f32], &Mask),
+    label: &Label,
     grid: &Grid,
     (found, fans): (Surface, Fans),
     mesh: &mut Mesh,
     execution: &mut Execution,
 ) -> Result<()> {
-    let h = grid.work_spacing();
     let normals = normals(&found.points, &found.triangles, &fans, execution)?;
     let mut thickness: Vec<f32> = zeros(found.points.len())?;
     execution.fill(&mut thickness, PIECE, |piece, out| {
         for (i, out) in out.iter_mut().enumerate() {
             let p = PIECE * piece + i;
-            let directory = &batch.directories[found.source[p] as usize];
-            let distance = Sampler {
-                directory,
-                field: distance,
-                h,
-            };
-            let view = View::new(&Inside { distance, mask }, found.points[p], normals[p]);
+            let view = label.view(found.source[p], found.points[p], normals[p]);
             *out = (view.thickness * grid.unit()) as f32;
         }
     })?;
@@ -298,12 +303,12 @@ fn append(
     for &[a, b, c] in &found.triangles {
         // Outward stays outward in a mirror only if the corners change places.
         let triangle = if mirrored { [a, c, b] } else { [a, b, c] };
-        let part = &batch.parts[found.source[triangle[0] as usize] as usize];
+        let part = &label.batch.parts[found.source[triangle[0] as usize] as usize];
         push(&mut mesh.triangles, triangle.map(|p| first + p))?;
         push(&mut mesh.labels, part.label)?;
         push(&mut mesh.components, part.component)?;
     }
-    let to_world = |p: &Vec3| grid.world(std::array::from_fn(|a| p[a] / h[a]));
+    let to_world = |p: &Vec3| grid.world(std::array::from_fn(|a| p[a] / label.h[a]));
     let points = found.points.iter().map(to_world);
     extend(&mut mesh.points, points.map(|p| p.map(|v| v as f32)))?;
     let directions = normals.iter().map(|n| grid.direction_of(*n));

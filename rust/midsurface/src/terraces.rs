@@ -67,16 +67,24 @@ impl LowPass {
     }
 }
 
+/// How a point on a boundary moves.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) enum OnBoundary {
+    #[default]
+    Stays,
+    /// Within the plane across this unit vector.
+    Within(Vec3),
+    /// Along its normal, as all others do.
+    Freely,
+}
+
 /// What the filter knows of a point and the line that it is on.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct LineOfPoint {
     /// Mean length of its edges.
     pub edge: f64,
-    /// Unit vector across the plane within which the point moves where it is on a boundary; zero
-    /// where it is free.
-    pub across: Vec3,
-    /// Whether the point stays where it is on a boundary.
-    pub stays: bool,
+    /// How it moves where it is on a boundary.
+    pub on_boundary: OnBoundary,
     /// Farthest the point may move, so that it stays in the volume.
     pub room: f64,
     /// Whether it is in its component's first or last slice. Where the surface turns back there, so
@@ -92,7 +100,7 @@ struct Neighbours {
 }
 
 /// Smooths the points of a manifold, given by its triangles and their fans, along their `normals`.
-/// Points on a boundary stay in their slice. `lines` tells the line of every point.
+/// `lines` tells of every point how it may move.
 pub(crate) fn flatten_terraces(
     points: &mut [Vec3],
     (triangles, fans): (&[[u32; 3]], &Fans),
@@ -108,10 +116,9 @@ pub(crate) fn flatten_terraces(
     let moves = moves(points, normals, &neighbours, &filter.weights(), execution)?;
     let rings = neighbours.rings(lines)?;
     for (i, point) in points.iter_mut().enumerate() {
-        let way = if neighbours.boundary[i] {
-            within_slice(normals[i], lines[i].across)
-        } else {
-            normals[i]
+        let way = match lines[i].on_boundary {
+            OnBoundary::Within(across) if neighbours.boundary[i] => within(normals[i], across),
+            _ => normals[i],
         };
         if lines[i].at_end && !neighbours.boundary[i] {
             continue;
@@ -123,9 +130,9 @@ pub(crate) fn flatten_terraces(
     Ok(())
 }
 
-/// The vector within the slice that moves a surface by 1 along its normal, or less where the
-/// surface lies flat.
-fn within_slice(normal: Vec3, across: Vec3) -> Vec3 {
+/// The vector within a plane that moves a surface by 1 along its normal, or less where the surface
+/// lies flat in the plane.
+fn within(normal: Vec3, across: Vec3) -> Vec3 {
     let within = along(normal, -dot(normal, across), across);
     within.map(|v| v / dot(within, within).max(0.25))
 }
@@ -286,7 +293,8 @@ impl Neighbours {
 
     /// Rings of points between each point and one that stays, at most [`RINGS`].
     fn rings(&self, lines: &[LineOfPoint]) -> Result<Vec<u8>> {
-        let stays = |p: usize| self.boundary[p] && lines[p].stays;
+        let stays =
+            |p: usize| self.boundary[p] && matches!(lines[p].on_boundary, OnBoundary::Stays);
         let mut rings = collected((0..lines.len()).map(|p| if stays(p) { 0 } else { RINGS }))?;
         for ring in 1..RINGS {
             for p in 0..rings.len() {

@@ -1,7 +1,7 @@
 //! Both faces of the label as seen from a point of the mid-surface: how thick the label is there,
 //! and how far off its middle the point lies.
 
-use crate::grid::{length, unit, Vec3};
+use crate::grid::{last_voxel, length, unit, Vec3};
 use crate::interpolation::Sampler;
 use crate::ray::{Inside, Ray, Reach};
 
@@ -90,10 +90,10 @@ impl View {
 /// The part of the normal that is parallel to all borders that are so near that the ridge field
 /// missed a part of the sheet beyond them.
 fn parallel_to_border(distance: &Sampler, p: Vec3, normal: Vec3, thickness: f64) -> Vec3 {
+    let last = last_voxel(distance.directory.dimensions, distance.h);
     let near = |a: usize| {
-        let last = (distance.directory.dimensions[a] - 1) as f64 * distance.h[a];
         // The field reaches half a thickness to the face, and as far again by its Gaussian.
-        p[a].min(last - p[a]) < thickness * normal[a].abs() + 1e-6
+        p[a].min(last[a] - p[a]) < thickness * normal[a].abs() + 1e-6
     };
     std::array::from_fn(|a| if near(a) { 0.0 } else { normal[a] })
 }

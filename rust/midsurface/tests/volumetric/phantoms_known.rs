@@ -96,7 +96,7 @@ must!(
     "disk with a hole, 2 thick",
     CLEAN
 );
-falls_short!(
+must!(
     disk_with_a_hole_2_thick_noisy,
     "disk with a hole, 2 thick",
     NOISY
@@ -106,7 +106,7 @@ must!(disk_in_slices_noisy, "disk in slices", NOISY);
 falls_short!(cap_clean, "cap", CLEAN);
 falls_short!(cap_noisy, "cap", NOISY);
 falls_short!(cap_2_thick_clean, "cap 2 thick", CLEAN);
-falls_short!(cap_2_thick_noisy, "cap 2 thick", NOISY);
+must!(cap_2_thick_noisy, "cap 2 thick", NOISY);
 must!(disk_3_to_12_thick_clean, "disk 3 to 12 thick", CLEAN);
 must!(disk_3_to_12_thick_noisy, "disk 3 to 12 thick", NOISY);
 must!(plane_85_degrees_clean, "plane 85 degrees", CLEAN);
