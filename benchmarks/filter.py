@@ -8,7 +8,8 @@ Fig11-IMM.vti. Each volume has a process of its own, so that its memory is its o
 Both methods are measured. Seconds: wall time of the filter alone, its input already read, the
 median of three runs, each with a new filter. Contour: ParaView's own filter at 0.5, measured in the
 same way. Memory: the peak beyond what the process held before the first run, so beyond ParaView and
-the input. A second table says what share of its time each stage takes, by the filter's own progress.
+the input. A second table says what share of its time each stage takes in a run with one thread, by the filter's
+own progress.
 """
 import json
 import os
@@ -139,7 +140,8 @@ def measure(plugin, path, method):
         lambda: simple.MidSurface(Input=reader, Method=method), figures
     )
 
-    stages_of_run = stages(simple.MidSurface(Input=reader, Method=method))
+    # With one worker one stage is at work at a time.
+    stages_of_run = stages(simple.MidSurface(Input=reader, Method=method, Threads=1))
 
     def contour():
         return simple.Contour(Input=reader, ContourBy=["POINTS", array], Isosurfaces=[0.5])

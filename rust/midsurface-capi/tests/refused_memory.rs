@@ -16,7 +16,7 @@ use midsurface::{
 /// Buffers of fewer bytes are granted. Workers have buffers of their own, which are as large as a block
 /// of the surface or a slice of the volume at most, whatever the size of the data.
 const LARGE: usize = 8 << 10;
-const LARGE_OF_WORKER: usize = 128 << 10;
+const LARGE_OF_WORKER: usize = 32 << 10;
 
 /// Large buffers asked for, and which of them is refused.
 static ASKED: AtomicUsize = AtomicUsize::new(0);

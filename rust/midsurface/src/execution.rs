@@ -3,6 +3,8 @@
 //! The calling thread hands batches of work to a pool of the library's own and talks to the
 //! observer between them, so that a host's callback is never called from a worker.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use rayon::ThreadPool;
 
@@ -88,7 +90,7 @@ const MOST_ITEMS: usize = 4096;
 
 /// A pool and an observer for one run.
 pub(crate) struct Execution<'a> {
-    pool: ThreadPool,
+    pool: Arc<ThreadPool>,
     observer: &'a mut dyn Observer,
     /// The share of the run's progress that stages share out, and the present stage's of that.
     span: [f64; 2],
@@ -107,8 +109,13 @@ impl<'a> Execution<'a> {
             .thread_name(|i| format!("midsurface-{i}"))
             .build()
             .map_err(|error| Error::Threads(error.to_string()))?;
-        Ok(Self {
-            pool,
+        Ok(Self::on(&Arc::new(pool), observer))
+    }
+
+    /// Work of the same pool that another observer is told of.
+    pub fn on(pool: &Arc<ThreadPool>, observer: &'a mut dyn Observer) -> Self {
+        Self {
+            pool: Arc::clone(pool),
             observer,
             span: [0.0, 1.0],
             stage: "",
@@ -116,7 +123,11 @@ impl<'a> Execution<'a> {
             to: 0.0,
             passes: 1,
             passes_done: 0,
-        })
+        }
+    }
+
+    pub fn pool(&self) -> Arc<ThreadPool> {
+        Arc::clone(&self.pool)
     }
 
     /// Lets the stages that follow share out the run's progress between `from` and `to`.
@@ -141,8 +152,13 @@ impl<'a> Execution<'a> {
     pub fn report(&mut self, share: f64) -> Result<()> {
         let passes = (self.passes_done as f64 + share) / self.passes as f64;
         let stages = self.from + (self.to - self.from) * passes.min(1.0);
-        let fraction = self.span[0] + (self.span[1] - self.span[0]) * stages;
-        if self.observer.progress(fraction.clamp(0.0, 1.0), self.stage) {
+        self.tell(stages, self.stage)
+    }
+
+    /// Tells the observer how much of the present span is done.
+    pub fn tell(&mut self, done: f64, stage: &str) -> Result<()> {
+        let fraction = self.span[0] + (self.span[1] - self.span[0]) * done;
+        if self.observer.progress(fraction.clamp(0.0, 1.0), stage) {
             Ok(())
         } else {
             Err(Error::Cancelled)

@@ -33,11 +33,12 @@
 //!
 //! Arrays are in the order x, y, z, volumes have shape (z, y, x) with x fastest. Lengths inside
 //! are in units of the finest spacing, so that the same voxels in other units give the same mesh;
-//! `grid.rs` tells the frames. Everything between scan and polylines happens in batches of whole
-//! components (`batches.rs`), so that memory follows the largest batch, and depends on places in the
-//! volume only, never on the order of work: any number of threads gives the same mesh. So does any
-//! number of processes that hold a piece of the volume each: they swap runs (`exchange.rs`) until
-//! each has whole components (`territory.rs`, `pieces.rs`), and what follows is the same.
+//! `grid.rs` tells the frames. Everything between scan and polylines, or the ridge surface, happens in
+//! batches of whole components, two side by side (`batches.rs`), so that memory follows the largest
+//! batches, and depends on places in the volume only, never on the order of work: any number of
+//! threads gives the same mesh. So does any number of processes that hold a piece of the volume each:
+//! they swap runs (`exchange.rs`) until each has whole components (`territory.rs`, `pieces.rs`), and
+//! what follows is the same.
 #![forbid(unsafe_code)]
 
 mod batches;
@@ -266,9 +267,9 @@ pub fn ridge_field(
         &parts,
         &volume.grid,
         &mut execution,
-        1.0,
-        "Writing the fields",
-        |batch, field, _| {
+        (1.0, "Writing the fields"),
+        |batch, field, _| Ok((batch, field)),
+        |(batch, field)| {
             for (brick, place) in batch.places() {
                 for (entry, [x, y, z]) in bricks::voxels(brick, place, volume.grid.dimensions) {
                     // Margins of neighbouring parts overlap: the stronger field wins.
@@ -352,11 +353,11 @@ fn trace_polylines(
         parts,
         grid,
         execution,
-        until,
-        "Tracing mid-polylines",
-        |batch, field, execution| {
-            disks += polylines::polylines(batch, field, grid, &mut polylines, execution)?;
-            Ok(())
+        (until, "Tracing mid-polylines"),
+        |batch, field, execution| polylines::polylines(&batch, &field, grid, execution),
+        |(found, disks_of_batch)| {
+            disks += disks_of_batch;
+            polylines.append(found)
         },
     )?;
     Ok((polylines, disks))
@@ -374,12 +375,13 @@ fn find_ridge_surface(
     if findings.is_slice {
         return Ok(mesh);
     }
-    for_each_batch(parts, execution, 1.0, |parts, execution| {
-        let first = mesh.triangles.len();
-        ridge_surface::ridge_surface(parts, grid, options.edge_length, &mut mesh, execution)?;
+    let work = |parts: &[Part], execution: &mut Execution| {
+        ridge_surface::ridge_surface(parts, grid, options.edge_length, execution)
+    };
+    for_each_batch(parts, execution, 1.0, work, |parts, surface| {
         // One by one: a set made at once would ask for memory for all triangles.
         let mut found = BTreeSet::new();
-        for of_component in mesh.components[first..].chunk_by(|a, b| a == b) {
+        for of_component in surface.components.chunk_by(|a, b| a == b) {
             found.insert(of_component[0]);
         }
         for component in parts.chunk_by(|a, b| a.component == b.component) {
@@ -387,7 +389,7 @@ fn find_ridge_surface(
                 *findings.without.entry(component[0].label).or_default() += 1;
             }
         }
-        Ok(())
+        mesh.append(surface)
     })?;
     findings.triangles = mesh.triangles.len();
     findings.is_far = !parts.is_empty() && findings::is_volume_far(grid);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use crate::components::DisjointSets;
-use crate::error::{collected, filled, push, reserved, zeros, Error, Result};
+use crate::error::{check_count, collected, extend, filled, push, reserved, zeros, Error, Result};
 use crate::execution::Execution;
 use crate::flips::flip_edges;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
@@ -84,6 +84,20 @@ fn unchecked(_: Error) -> InvariantViolation {
 }
 
 impl Mesh {
+    /// Appends another mesh that shares no point with this one.
+    pub(crate) fn append(&mut self, other: Self) -> Result<()> {
+        check_count("points", self.points.len() + other.points.len(), 1)?;
+        check_count("triangles", self.triangles.len() + other.triangles.len(), 3)?;
+        let first = self.points.len() as u32;
+        let triangles = other.triangles.iter().map(|t| t.map(|p| first + p));
+        extend(&mut self.triangles, triangles)?;
+        extend(&mut self.points, other.points)?;
+        extend(&mut self.normals, other.normals)?;
+        extend(&mut self.thickness, other.thickness)?;
+        extend(&mut self.labels, other.labels)?;
+        extend(&mut self.components, other.components)
+    }
+
     /// Builds the mesh from the zipper's triangles.
     pub(crate) fn assemble(
         polylines: &Polylines,

@@ -51,6 +51,22 @@ pub struct Polylines {
     pub lines: Vec<Polyline>,
 }
 
+impl Polylines {
+    /// Appends the lines of others.
+    pub(crate) fn append(&mut self, others: Self) -> Result<()> {
+        let first = self.points.len();
+        extend(&mut self.points, others.points)?;
+        extend(&mut self.thickness, others.thickness)?;
+        extend(&mut self.border_distance, others.border_distance)?;
+        let lines = others.lines.into_iter();
+        let moved = lines.map(|line| Polyline {
+            first: first + line.first,
+            ..line
+        });
+        extend(&mut self.lines, moved)
+    }
+}
+
 /// One line: `points[first .. first + count]`, joined in this order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polyline {
@@ -75,20 +91,20 @@ struct SliceLines {
     disks: usize,
 }
 
-/// Traces all slices of a batch and appends their lines. Returns the number of disks.
+/// The lines of all slices of a batch, and the number of disks.
 pub(crate) fn polylines(
     batch: &Batch,
     field: &RidgeField,
     grid: &Grid,
-    polylines: &mut Polylines,
     execution: &mut Execution,
-) -> Result<usize> {
+) -> Result<(Polylines, usize)> {
     let h = grid.work_spacing();
     let slices = batch.parts.iter().enumerate().flat_map(|(i, part)| {
         let slices = part.runs.chunk_by(|a, b| a.z == b.z);
         slices.map(move |runs| (i, runs))
     });
     let jobs = collected(slices)?;
+    let mut polylines = Polylines::default();
     let mut disks = 0;
     let mut job = jobs.iter();
     execution.stream(
@@ -108,12 +124,12 @@ pub(crate) fn polylines(
             let found = found?;
             disks += found.disks;
             if let Some(&(part, runs)) = job.next() {
-                append(polylines, found, &batch.parts[part], runs[0].z, grid)?;
+                append(&mut polylines, found, &batch.parts[part], runs[0].z, grid)?;
             }
             Ok(())
         },
     )?;
-    Ok(disks)
+    Ok((polylines, disks))
 }
 
 /// The fields of a part.

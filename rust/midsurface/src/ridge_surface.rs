@@ -15,7 +15,7 @@ use crate::components::Part;
 use crate::contour;
 use crate::crest::{self, core_sheets};
 use crate::distance;
-use crate::error::{check_count, collected, extend, push, zeros, Result};
+use crate::error::{collected, zeros, Result};
 use crate::execution::Execution;
 use crate::extension;
 use crate::grid::{last_voxel, Grid, Vec3};
@@ -56,15 +56,14 @@ const LOW_PASS: LowPass = LowPass {
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 
-/// Finds the surfaces of parts that make up whole components and appends them to `mesh`. Edges are
-/// `edge_length` world units long, 0: the default.
+/// The surfaces of parts that make up whole components. Edges are `edge_length` world units long, 0:
+/// the default.
 pub(crate) fn ridge_surface(
     parts: &[Part],
     grid: &Grid,
     edge_length: f64,
-    mesh: &mut Mesh,
     execution: &mut Execution,
-) -> Result<()> {
+) -> Result<Mesh> {
     let h = grid.work_spacing();
     execution.stage(
         "Measuring thickness",
@@ -96,7 +95,7 @@ pub(crate) fn ridge_surface(
     let mut found = remeshed(surface, wanted, execution)?;
     keep_within(grid, &mut found.points);
     let (found, fans) = finish(&label, found, grid, wanted, execution)?;
-    append(&label, grid, (found, fans), mesh, execution)
+    in_world(&label, grid, (found, fans), execution)
 }
 
 /// The surface in new triangles; each point's part stays its source.
@@ -277,14 +276,13 @@ fn values(
     Ok(values)
 }
 
-/// Appends a finished surface to the mesh, in world coordinates; `source` is the part of each point.
-fn append(
+/// A finished surface as a mesh in world coordinates; `source` is the part of each point.
+fn in_world(
     label: &Label,
     grid: &Grid,
     (found, fans): (Surface, Fans),
-    mesh: &mut Mesh,
     execution: &mut Execution,
-) -> Result<()> {
+) -> Result<Mesh> {
     let normals = normals(&found.points, &found.triangles, &fans, execution)?;
     let mut thickness: Vec<f32> = zeros(found.points.len())?;
     execution.fill(&mut thickness, PIECE, |piece, out| {
@@ -294,24 +292,23 @@ fn append(
             *out = (view.thickness * grid.unit()) as f32;
         }
     })?;
-    let point_count = mesh.points.len() + found.points.len();
-    let triangle_count = mesh.triangles.len() + found.triangles.len();
-    check_count("points", point_count, 1)?;
-    check_count("triangles", triangle_count, 3)?;
-    let first = mesh.points.len() as u32;
     let mirrored = grid.is_mirrored();
-    for &[a, b, c] in &found.triangles {
-        // Outward stays outward in a mirror only if the corners change places.
-        let triangle = if mirrored { [a, c, b] } else { [a, b, c] };
-        let part = &label.batch.parts[found.source[triangle[0] as usize] as usize];
-        push(&mut mesh.triangles, triangle.map(|p| first + p))?;
-        push(&mut mesh.labels, part.label)?;
-        push(&mut mesh.components, part.component)?;
-    }
+    // Outward stays outward in a mirror only if the corners change places.
+    let triangles = found.triangles.iter();
+    let triangles = triangles.map(|&[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] });
+    let of_triangles = || {
+        let sources = found.triangles.iter().map(|t| found.source[t[0] as usize]);
+        sources.map(|part| &label.batch.parts[part as usize])
+    };
     let to_world = |p: &Vec3| grid.world(std::array::from_fn(|a| p[a] / label.h[a]));
     let points = found.points.iter().map(to_world);
-    extend(&mut mesh.points, points.map(|p| p.map(|v| v as f32)))?;
     let directions = normals.iter().map(|n| grid.direction_of(*n));
-    extend(&mut mesh.normals, directions.map(|n| n.map(|v| v as f32)))?;
-    extend(&mut mesh.thickness, thickness)
+    Ok(Mesh {
+        points: collected(points.map(|p| p.map(|v| v as f32)))?,
+        triangles: collected(triangles)?,
+        normals: collected(directions.map(|n| n.map(|v| v as f32)))?,
+        thickness,
+        labels: collected(of_triangles().map(|part| part.label))?,
+        components: collected(of_triangles().map(|part| part.component))?,
+    })
 }
