@@ -5,6 +5,27 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
+#include <cstdlib>
+#include <new>
+
+//------------------------------------------------------------------------------
+void AllocateTuples(vtkDataArray* array, size_t tuples)
+{
+  const size_t values = tuples * static_cast<size_t>(array->GetNumberOfComponents());
+  if (values == 0)
+  {
+    array->SetNumberOfTuples(0);
+    return;
+  }
+  void* memory = std::malloc(values * static_cast<size_t>(array->GetDataTypeSize()));
+  if (!memory)
+  {
+    throw std::bad_alloc();
+  }
+  array->SetVoidArray(
+    memory, static_cast<vtkIdType>(values), 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
+}
+
 //------------------------------------------------------------------------------
 const void* ValuesOfType(vtkDataArray* array, int type, vtkSmartPointer<vtkDataArray>& kept)
 {
@@ -12,7 +33,9 @@ const void* ValuesOfType(vtkDataArray* array, int type, vtkSmartPointer<vtkDataA
   if (array->GetDataType() != type || !array->HasStandardMemoryLayout())
   {
     kept.TakeReference(vtkDataArray::CreateDataArray(type));
-    kept->DeepCopy(array);
+    kept->SetNumberOfComponents(array->GetNumberOfComponents());
+    AllocateTuples(kept, static_cast<size_t>(array->GetNumberOfTuples()));
+    kept->InsertTuples(0, array->GetNumberOfTuples(), 0, array);
   }
   return kept->GetVoidPointer(0);
 }

@@ -4,10 +4,17 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <cstddef>
 #include <cstdint>
 
 class vtkDataArray;
 class vtkPolyData;
+
+/**
+ * Makes room for so many tuples, whose values are unknown. Throws std::bad_alloc where memory is
+ * refused; VTK's own allocation would end the program.
+ */
+void AllocateTuples(vtkDataArray* array, size_t tuples);
 
 /**
  * The values of an array as the VTK type `type`: the array's own memory, or a copy where its type

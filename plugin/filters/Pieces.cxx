@@ -1,5 +1,6 @@
 #include "Pieces.h"
 
+#include "ArrayValues.h"
 #include "BlockRun.h"
 #include "SegmentationVolume.h"
 
@@ -280,7 +281,7 @@ vtkSmartPointer<vtkImageData> Pieces::Join(
   auto joined = MakeArray(headers.front(), name);
   int values[6];
   ValueExtent(headers.front(), whole, values);
-  joined->SetNumberOfTuples(Size(values));
+  AllocateTuples(joined, static_cast<size_t>(Size(values)));
   vtkIdType start = 0;
   for (const Header& header : headers)
   {

@@ -29,7 +29,7 @@ vtkSmartPointer<ArrayType> CopyArray(
   auto array = vtkSmartPointer<ArrayType>::New();
   array->SetName(name);
   array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
+  AllocateTuples(array, tuples);
   if (tuples > 0)
   {
     std::copy_n(values, tuples * static_cast<size_t>(components), array->GetPointer(0));
@@ -55,9 +55,15 @@ void CopyMesh(const midsurface_mesh_arrays& mesh, vtkPolyData* output)
   output->GetPointData()->AddArray(
     CopyArray<vtkFloatArray>("Thickness", mesh.thickness, mesh.point_count));
 
+  vtkNew<vtkTypeInt64Array> offsets;
+  AllocateTuples(offsets, mesh.triangle_count + 1);
+  for (size_t i = 0; i <= mesh.triangle_count; ++i)
+  {
+    offsets->SetValue(static_cast<vtkIdType>(i), static_cast<vtkTypeInt64>(3 * i));
+  }
   vtkNew<vtkCellArray> triangles;
-  triangles->SetData(
-    3, CopyArray<vtkTypeInt64Array>("Connectivity", mesh.triangles, 3 * mesh.triangle_count));
+  triangles->SetData(offsets,
+    CopyArray<vtkTypeInt64Array>("Connectivity", mesh.triangles, 3 * mesh.triangle_count));
   output->SetPolys(triangles);
   // As the active scalars, since that is what ParaView colours by at first.
   output->GetCellData()->SetScalars(

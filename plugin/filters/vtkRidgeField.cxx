@@ -1,5 +1,6 @@
 #include "vtkRidgeField.h"
 
+#include "ArrayValues.h"
 #include "FilterRun.h"
 #include "SegmentationVolume.h"
 
@@ -43,10 +44,10 @@ void vtkRidgeField::Extract(FilterRun& run, const SegmentationVolume& volume, vt
 {
   vtkNew<vtkFloatArray> distance;
   distance->SetName("Distance");
-  distance->SetNumberOfValues(static_cast<vtkIdType>(volume.Description().length));
+  AllocateTuples(distance, volume.Description().length);
   vtkNew<vtkFloatArray> ridge;
   ridge->SetName("RidgeField");
-  ridge->SetNumberOfValues(static_cast<vtkIdType>(volume.Description().length));
+  AllocateTuples(ridge, volume.Description().length);
   midsurface::RidgeField(volume.Description(), distance->GetPointer(0), ridge->GetPointer(0),
     volume.Description().length, run.Options);
 
