@@ -62,8 +62,8 @@ void CopyMesh(const midsurface_mesh_arrays& mesh, vtkPolyData* output)
     offsets->SetValue(static_cast<vtkIdType>(i), static_cast<vtkTypeInt64>(3 * i));
   }
   vtkNew<vtkCellArray> triangles;
-  triangles->SetData(offsets,
-    CopyArray<vtkTypeInt64Array>("Connectivity", mesh.triangles, 3 * mesh.triangle_count));
+  triangles->SetData(
+    offsets, CopyArray<vtkTypeInt64Array>("Connectivity", mesh.triangles, 3 * mesh.triangle_count));
   output->SetPolys(triangles);
   // As the active scalars, since that is what ParaView colours by at first.
   output->GetCellData()->SetScalars(
