@@ -34,7 +34,7 @@ use crate::scraps::drop_scraps;
 use crate::self_intersections::{self, remove_self_intersections};
 use crate::settle::settle;
 use crate::sheet::Sheet;
-use crate::terraces::{flatten_terraces, LineOfPoint, LowPass, OnBoundary};
+use crate::terraces::{flatten_terraces, Filters, LineOfPoint, LowPass, OnBoundary, STRONG};
 use crate::trim::trim;
 use crate::weld::weld;
 
@@ -46,12 +46,14 @@ const FARTHEST: f64 = 2.0;
 const SETTLINGS: usize = 4;
 /// Rings of voxels that sheets are extended by, at most.
 const RINGS: u8 = 12;
-/// The filter that flattens terraces: shorter waves than for lines, since midway points have fewer
-/// terraces, and gently, since membranes have bends of their own. Terraces of slices that lie farther
-/// apart are longer: the passband is divided by the coarsest spacing.
-const LOW_PASS: LowPass = LowPass {
-    passband: 0.1,
-    degree: 7,
+/// The filters that flatten terraces: shorter waves than for lines, since midway points have fewer
+/// terraces, and gently, since membranes have bends of their own, but for where terraces are long.
+const FILTERS: Filters = Filters {
+    usual: LowPass {
+        passband: 0.1,
+        degree: 7,
+    },
+    near_lattice_planes: Some(STRONG),
 };
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
@@ -123,7 +125,7 @@ fn finish(
 ) -> Result<(Surface, Fans)> {
     let passes = 1
         + 3 * NORMAL_PASSES
-        + LOW_PASS.passes()
+        + FILTERS.passes()
         + midway::CLOSER_PASSES
         + self_intersections::PASSES;
     execution.stage("Flattening terraces", 0.94, 1.0, passes)?;
@@ -177,10 +179,7 @@ fn flatten(
         (&surface.triangles, fans),
         &normals,
         &points,
-        LowPass {
-            passband: LOW_PASS.passband / h.iter().copied().fold(1.0, f64::max),
-            ..LOW_PASS
-        },
+        FILTERS.on_spacing(h),
         execution,
     )
 }

@@ -7,7 +7,8 @@
 //! is a move of each point along its normal, so that nothing slides within the surface. K weighs
 //! neighbours by the inverse square of their distance, since where a sheet leans the slices' lines
 //! lie far apart; on a boundary it follows the boundary. A lower passband would remove longer
-//! terraces, too, but takes the bends of real membranes for such.
+//! terraces, too, but takes the bends of real membranes for such: what is nearly parallel to a
+//! lattice plane, where terraces are long, may have a filter of its own.
 
 use crate::buckets::{self, Buckets};
 use crate::error::{collected, zeros, Result};
@@ -24,11 +25,28 @@ pub(crate) struct LowPass {
     pub degree: usize,
 }
 
-/// The filter for lines in slices: it takes waves of less than about fourteen edges.
-pub(crate) const OF_LINES: LowPass = LowPass {
+/// The filters for lines in slices.
+pub(crate) const OF_LINES: Filters = Filters {
+    usual: STRONG,
+    near_lattice_planes: None,
+};
+/// A filter for long terraces: it takes waves of less than about fourteen edges.
+pub(crate) const STRONG: LowPass = LowPass {
     passband: 0.05,
     degree: 24,
 };
+
+/// The filters of a mesh.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Filters {
+    pub usual: LowPass,
+    /// Where the sheet is nearly parallel to a lattice plane; `None`: the usual one.
+    pub near_lattice_planes: Option<LowPass>,
+}
+
+/// Cosines of the angle between a normal and an axis: the share of the filter near lattice planes
+/// grows from the first, at 11°, where terraces are five voxels long, to the second, at 6° and ten.
+const NEAR_LATTICE_PLANE: [f64; 2] = [0.98, 0.995];
 /// No point moves by more than this share of its line's edges: nearly half a voxel.
 const MOST: f64 = 0.3;
 /// Passes that smooth the normals along which heights are measured.
@@ -40,10 +58,33 @@ const PIECE: usize = 1024;
 /// Passes that finding the neighbours makes.
 const PREPARING: usize = halfedge::TWIN_PASSES + buckets::PASSES;
 
-impl LowPass {
+impl Filters {
     /// Passes over the points that [`flatten_terraces`] makes, for its progress.
     pub const fn passes(&self) -> usize {
-        2 * self.degree + SMOOTH_NORMALS + 2 + PREPARING
+        let more = match self.near_lattice_planes {
+            Some(filter) => 2 * filter.degree,
+            None => 0,
+        };
+        2 * self.usual.degree + more + SMOOTH_NORMALS + 2 + PREPARING
+    }
+
+    /// The same for slices that lie farther apart, whose terraces are longer: passbands are divided
+    /// by the coarsest spacing.
+    pub fn on_spacing(self, h: Vec3) -> Self {
+        Self {
+            usual: self.usual.on_spacing(h),
+            near_lattice_planes: self.near_lattice_planes.map(|f| f.on_spacing(h)),
+        }
+    }
+}
+
+impl LowPass {
+    fn on_spacing(self, h: Vec3) -> Self {
+        let coarsest = h.iter().copied().fold(1.0, f64::max);
+        Self {
+            passband: self.passband / coarsest,
+            ..self
+        }
     }
 
     /// Coefficients of the polynomial over Chebyshev's, under a Hamming window, summing to 1 so that
@@ -106,14 +147,14 @@ pub(crate) fn flatten_terraces(
     (triangles, fans): (&[[u32; 3]], &Fans),
     normals: &[Vec3],
     lines: &[LineOfPoint],
-    filter: LowPass,
+    filters: Filters,
     execution: &mut Execution,
 ) -> Result<()> {
     if triangles.is_empty() {
         return Ok(());
     }
     let neighbours = Neighbours::new((triangles, fans), points, lines, execution)?;
-    let moves = moves(points, normals, &neighbours, &filter.weights(), execution)?;
+    let moves = moves(points, normals, &neighbours, filters, execution)?;
     let rings = neighbours.rings(lines)?;
     for (i, point) in points.iter_mut().enumerate() {
         let way = match lines[i].on_boundary {
@@ -137,12 +178,12 @@ fn within(normal: Vec3, across: Vec3) -> Vec3 {
     within.map(|v| v / dot(within, within).max(0.25))
 }
 
-/// How far the low-pass would move each point along its normal.
+/// How far the filters would move each point along its normal.
 fn moves(
     points: &[Vec3],
     normals: &[Vec3],
     neighbours: &Neighbours,
-    weights: &[f64],
+    filters: Filters,
     execution: &mut Execution,
 ) -> Result<Vec<f64>> {
     let smoothed = neighbours.smooth_normals(normals, execution)?;
@@ -154,22 +195,38 @@ fn moves(
             *out = neighbours.of(p).map(|(q, w)| w * height(q)).sum();
         }
     })?;
-    // A polynomial f alone would shrink what is curved by its slope at 0. Tukey's twicing, which
-    // filters what f took away and gives it back, has the response 2 f − f² and no slope there.
-    let mut moves = low_pass(
-        zeros(points.len())?,
-        Some(&heights),
-        neighbours,
-        weights,
-        execution,
-    )?;
-    let given_back = low_pass(
-        collected(moves.iter().copied())?,
-        None,
-        neighbours,
-        weights,
-        execution,
-    )?;
+    let mut moves = twiced(&heights, neighbours, filters.usual, execution)?;
+    if let Some(filter) = filters.near_lattice_planes {
+        let others = twiced(&heights, neighbours, filter, execution)?;
+        for ((own, other), normal) in moves.iter_mut().zip(others).zip(&smoothed) {
+            *own += near_lattice_plane(*normal) * (other - *own);
+        }
+    }
+    Ok(moves)
+}
+
+/// How nearly parallel to a lattice plane a sheet is, 0 to 1.
+fn near_lattice_plane(normal: Vec3) -> f64 {
+    let [from, to] = NEAR_LATTICE_PLANE;
+    let cosine = normal.iter().fold(0.0, |most: f64, n| most.max(n.abs()));
+    let share = ((cosine - from) / (to - from)).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// How far a low-pass would move each point. A polynomial f alone would shrink what is curved by its
+/// slope at 0. Tukey's twicing, which filters what f took away and gives it back, has the response
+/// 2 f − f² and no slope there.
+fn twiced(
+    heights: &[f64],
+    neighbours: &Neighbours,
+    filter: LowPass,
+    execution: &mut Execution,
+) -> Result<Vec<f64>> {
+    let weights = filter.weights();
+    let start = zeros(heights.len())?;
+    let mut moves = low_pass(start, Some(heights), neighbours, &weights, execution)?;
+    let start = collected(moves.iter().copied())?;
+    let given_back = low_pass(start, None, neighbours, &weights, execution)?;
     for (shift, back) in moves.iter_mut().zip(given_back) {
         *shift -= back;
     }
