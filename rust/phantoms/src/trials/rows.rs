@@ -39,6 +39,7 @@ fn accuracy_trials() -> Vec<Trial> {
         Trial::new("torus", |d| torus(d, [3.0, 8.0])),
         thin(Trial::new("torus 2 thick", |d| torus(d, [2.0; 2]))),
         Trial::new("tube", |d| tube(d, [3.0, 12.0])),
+        Trial::new("tube along an axis", tube_along_axis),
         thin(Trial::new("tube 2 thick", |d| tube(d, [2.0; 2]))),
         Trial::new("disk", |d| disk(d, [3.0, 12.0], false)),
         Trial::new("disk with a hole", |d| disk(d, [3.0, 12.0], true)),
@@ -175,10 +176,24 @@ fn torus(dice: &mut Dice, thickness: [f64; 2]) -> Phantom {
 }
 
 fn tube(dice: &mut Dice, thickness: [f64; 2]) -> Phantom {
+    tube_along(dice, Dice::direction, thickness)
+}
+
+/// All slices across the axis are the same, and so are their errors.
+fn tube_along_axis(dice: &mut Dice) -> Phantom {
+    const AXES: [Vec3; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    tube_along(dice, |dice| dice.one_of(&AXES), [3.0, 12.0])
+}
+
+fn tube_along(
+    dice: &mut Dice,
+    axis: impl FnOnce(&mut Dice) -> Vec3,
+    thickness: [f64; 2],
+) -> Phantom {
     let frame = cube();
     let shape = Shape::Tube {
         centre: dice.place(&frame, 3.0),
-        axis: dice.direction(),
+        axis: axis(dice),
         radius: dice.between(15.0, 28.0),
     };
     single(frame, shape, constant(dice, thickness), [1, 0, 2])
