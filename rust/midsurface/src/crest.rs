@@ -4,8 +4,9 @@
 //! smoothed as tensors, and the offset the Newton step for the logarithm; here both come from the
 //! profile (`profile.rs`), with a scale of each voxel's own. A voxel is a *core* voxel where it sees
 //! the sheet only: not where the profile falls within the sheet as steeply as across, since there
-//! another sheet joins, or the label ends in a curve. The sheets of the other voxels follow from
-//! those of their core neighbours (`extension.rs`).
+//! another sheet joins, or the label ends in a curve, and not where the normals around disagree:
+//! in the corner between two sheets their mean is the normal of neither, and would join them. The
+//! sheets of the other voxels follow from those of their core neighbours (`extension.rs`).
 
 use crate::block::{matrix_at, vector_at, Block};
 use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
@@ -22,6 +23,9 @@ use crate::vectors::with_widest_vectors;
 const TANGENTIAL: f32 = 0.6;
 /// and is curved within the sheet by at most this share of its curvature across.
 const BENT: f32 = 0.32;
+/// The normals around a core voxel vary by at most this share of what they have in common, as the
+/// middle eigenvalue of their tensor over the largest, both above the least.
+const VARIED: f32 = 0.15;
 /// Bounds of the standard deviation ρ of the tensors' smoothing, which is σ, in work units.
 const RHO_BOUNDS: [f32; 2] = [1.2, 3.4];
 /// Kernels of ρ are made at steps of this ratio.
@@ -298,13 +302,15 @@ fn find_sheets(
         for i in 0..LAYER {
             let [xx, yy, xy, xz, yz] = tensor;
             let tensor = [xx[i], yy[i], 0.0, xy[i], xz[i], yz[i]];
-            let n = eigenvector(tensor, eigenvalues(tensor)[2]);
+            let [least, middle, largest] = eigenvalues(tensor);
+            let n = eigenvector(tensor, largest);
             let (offset, tangential, bent) = step(layer, i, n);
             let most = (TRUSTED as f32 * layer.sigma[i] + 0.5).min(farthest);
             let core = (near[i] > 0.0)
                 & (offset.abs() <= most)
                 & (tangential <= TANGENTIAL * layer.sigma[i])
-                & (bent <= BENT);
+                & (bent <= BENT)
+                & (middle - least <= VARIED * (largest - least));
             for (found, v) in found.iter_mut().zip([n[0], n[1], n[2], offset]) {
                 found[i] = if core { v } else { 0.0 };
             }

@@ -11,8 +11,9 @@ use crate::sheet::Sheet;
 
 /// Steps in a block of `SIDE`³ along x, y, z.
 pub(crate) const STRIDE: [usize; 3] = [1, SIDE, SIDE * SIDE];
-/// Neighbouring voxels whose normals differ by more than this cosine's angle share no sheet.
-const ALIKE: f64 = 0.3;
+/// Neighbouring voxels, and crossings in a face, whose normals differ by more than this cosine's
+/// angle share no sheet.
+const ALIKE: f64 = 0.7;
 /// Signed distances of neighbours may differ from what their normals say by so many work units:
 /// more is the seam between two sheets.
 const SEAM: f64 = 1.0;
@@ -154,7 +155,7 @@ impl Crossings {
     }
 
     /// Pairs the crossed edges around the face of a cube across `axis` with its low corner at
-    /// `base`; edges by their place in the ring.
+    /// `base`, where they are of one sheet; edges by their place in the ring.
     pub fn pairs(
         &self,
         base: usize,
@@ -202,7 +203,9 @@ impl Crossings {
             }
             _ => [None, None],
         };
-        pairs.into_iter().flatten()
+        let alike = |&(i, j): &(usize, usize)| dot(edge(i).1, edge(j).1).abs() >= ALIKE;
+        let shared = pairs.map(|pair| pair.filter(alike));
+        shared.into_iter().flatten()
     }
 
     /// The surface's corner in a cube: the mean of where its edges are crossed, moved onto the sheet.

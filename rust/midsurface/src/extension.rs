@@ -2,7 +2,8 @@
 //!
 //! Near a rim, a junction or a face the profile says little about the sheet, but the core voxels
 //! next to it do: a sheet runs on as it bends there (`bending.rs`). Ring by ring, an unknown voxel
-//! takes the mean of what its known neighbours say, each by its own normal and offset.
+//! takes the mean of what its known neighbours say, each by its own normal and offset. Where sheets
+//! meet the neighbours speak of several, and the one that most speak of goes on.
 
 use crate::bending::{bends, Bend};
 use crate::block::{row, Block, SIDE};
@@ -13,8 +14,10 @@ use crate::grid::Vec3;
 use crate::sheet::{by_offset, dot, Sheet};
 
 /// Neighbours that say the same: normals within this cosine, offsets within this many work units.
-const ALIKE: f32 = 0.7;
+const ALIKE: f32 = 0.8;
 const NEAR: f32 = 0.75;
+/// Normals that differ by more than this cosine's angle are those of sheets across each other.
+const ACROSS: f32 = 0.7;
 
 /// The ring in which a voxel learnt its sheet: never yet, 1 for core voxels, and so on; `FAR` where
 /// no label is within a voxel, and no sheet is wanted.
@@ -140,7 +143,7 @@ fn ring(
 }
 
 /// What the known neighbours of a voxel say of its sheet: the mean of those that agree with the
-/// middle one.
+/// one that speaks for them.
 fn continued(known: &Block<Sheet>, at: usize, bend: &Bend, h: Vec3) -> Option<Sheet> {
     let mut said = [Sheet::default(); 26];
     let mut count = 0;
@@ -166,26 +169,16 @@ fn continued(known: &Block<Sheet>, at: usize, bend: &Bend, h: Vec3) -> Option<Sh
     if count == 0 {
         return None;
     }
-    let mut order = [0; 26];
-    for (i, (order, sheet)) in order.iter_mut().zip(&said[..count]).enumerate() {
-        *order = by_offset(sheet, i);
-    }
-    let order = &mut order[..count];
-    order.sort_unstable();
-    let said = |i: usize| &said[order[i] as u32 as usize];
-    let first = *said(count / 2);
-    let normal = |s: &Sheet| [s[0], s[1], s[2]];
+    let said = &said[..count];
+    let first = spokesman(said);
     let mut sum = [0.0; 4];
     let mut agreed = 0.0;
-    for sheet in (0..count).map(said) {
-        let cosine = dot(normal(sheet), normal(&first));
-        let turn = cosine.signum();
-        if cosine.abs() >= ALIKE && (turn * sheet[3] - first[3]).abs() <= NEAR {
-            for (sum, v) in sum.iter_mut().zip(sheet) {
-                *sum += turn * v;
-            }
-            agreed += 1.0;
+    for sheet in said.iter().filter(|sheet| agree(sheet, &first)) {
+        let turn = dot(normal(sheet), normal(&first)).signum();
+        for (sum, v) in sum.iter_mut().zip(sheet) {
+            *sum += turn * v;
         }
+        agreed += 1.0;
     }
     let length = dot(normal(&sum), normal(&sum)).sqrt();
     Some([
@@ -194,4 +187,36 @@ fn continued(known: &Block<Sheet>, at: usize, bend: &Bend, h: Vec3) -> Option<Sh
         sum[2] / length,
         sum[3] / agreed,
     ])
+}
+
+/// The one that speaks for the others: the middle one by its offset or, where these speak of sheets
+/// across each other, the one that most agree with, so that a sheet that goes on beyond a junction
+/// is not interrupted by one that ends there.
+fn spokesman(said: &[Sheet]) -> Sheet {
+    let mut order = [0; 26];
+    for (i, (order, sheet)) in order.iter_mut().zip(said).enumerate() {
+        *order = by_offset(sheet, i);
+    }
+    let order = &mut order[..said.len()];
+    order.sort_unstable();
+    let in_order = || order.iter().map(|&o| said[o as u32 as usize]);
+    let middle = said[order[said.len() / 2] as u32 as usize];
+    let across = |s: &Sheet| dot(normal(s), normal(&middle)).abs() < ACROSS;
+    if !said.iter().any(across) {
+        return middle;
+    }
+    let supporters = |s: &Sheet| in_order().filter(|other| agree(other, s)).count();
+    let nearer = |a: &Sheet, b: &Sheet| b[3].abs().total_cmp(&a[3].abs());
+    let most = in_order().max_by(|a, b| supporters(a).cmp(&supporters(b)).then(nearer(a, b)));
+    most.unwrap_or(middle)
+}
+
+/// Whether two say the same.
+fn agree(a: &Sheet, b: &Sheet) -> bool {
+    let cosine = dot(normal(a), normal(b));
+    cosine.abs() >= ALIKE && (cosine.signum() * a[3] - b[3]).abs() <= NEAR
+}
+
+fn normal(sheet: &Sheet) -> [f32; 3] {
+    [sheet[0], sheet[1], sheet[2]]
 }

@@ -72,7 +72,7 @@ pub(crate) struct Label<'a> {
 
 impl Label<'_> {
     /// The distance to the outside within a part.
-    fn distance(&self, part: u32) -> Sampler<'_> {
+    pub fn distance(&self, part: u32) -> Sampler<'_> {
         Sampler {
             directory: &self.batch.directories[part as usize],
             field: self.distance,
@@ -92,6 +92,18 @@ impl Label<'_> {
         let view = self.view(part, point, normal);
         let off = view.to_middle.filter(|off| off.abs() <= most)?;
         sees_faces(&self.distance(part), point, &view, off).then_some(off)
+    }
+
+    /// Whether a point lies on the border of the volume, for each axis.
+    pub fn on_border(&self, p: Vec3) -> [bool; 3] {
+        let last = self.last();
+        std::array::from_fn(|a| p[a] <= 0.0 || p[a] >= last[a])
+    }
+
+    /// Whether a point lies in the volume, its border included.
+    pub fn within_volume(&self, p: Vec3) -> bool {
+        let last = self.last();
+        (0..3).all(|a| (0.0..=last[a]).contains(&p[a]))
     }
 
     /// The last voxel of the volume, work coordinates.
@@ -130,15 +142,15 @@ pub(crate) fn move_midway(
     label: &Label,
     surface: &mut Surface,
     fraction: &[f64],
+    fans: &Fans,
     execution: &mut Execution,
 ) -> Result<()> {
-    let fans = Fans::new(&surface.triangles, surface.points.len())?;
     let neighbours = fans.neighbours(&surface.triangles, execution)?;
     for step in MOVES {
         move_once(
             label,
             (surface, fraction),
-            (&fans, &neighbours),
+            (fans, &neighbours),
             step,
             execution,
         )?;

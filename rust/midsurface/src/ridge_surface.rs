@@ -4,7 +4,8 @@
 //! (`profile.rs`), the sheets at its crest (`crest.rs`), how they bend (`bending.rs`) and on to
 //! beyond the rims (`extension.rs`), a surface through them (`contour.rs`), wound the same way
 //! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
-//! (`weld.rs`), moved midway between both faces (`midway.rs`), remeshed (`remesh`), rid of terraces
+//! (`weld.rs`), moved midway between both faces (`midway.rs`), led on to where
+//! sheets meet (`reach.rs`), remeshed (`remesh`), rid of terraces
 //! (`terraces.rs`), moved a last little step (`midway.rs`) and rid of self-intersections
 //! (`self_intersections.rs`). How much of the progress a
 //! stage is given is how long it took on the membranes of real cells.
@@ -27,6 +28,7 @@ use crate::mesh::{drop_degenerate, turn_outward, Mesh};
 use crate::midway::{self, move_closer, move_midway, Label};
 use crate::normals::{normals, NORMAL_PASSES};
 use crate::profile::Profile;
+use crate::reach::{self, reach};
 use crate::remesh::remesh;
 use crate::rim::{self, sheet_fraction};
 use crate::scale::{self, HalfThickness};
@@ -77,7 +79,7 @@ pub(crate) fn ridge_surface(
     let distance = distance::distance(batch, h, execution)?;
     let sheets = find_sheets(batch, &distance, h, execution)?;
     let (mut surface, fraction) = cut_surface(batch, sheets, &distance, h, execution)?;
-    let passes = mask::PASSES + 1 + midway::PASSES;
+    let passes = mask::PASSES + 1 + midway::PASSES + reach::PASSES;
     execution.stage("Moving midway", 0.49, 0.65, passes)?;
     let mask = Mask::new(batch, &distance, execution)?;
     let fraction = values(batch, &surface, &fraction, h, execution)?;
@@ -87,7 +89,10 @@ pub(crate) fn ridge_surface(
         mask: &mask,
         h,
     };
-    move_midway(&label, &mut surface, &fraction, execution)?;
+    let fans = Fans::new(&surface.triangles, surface.points.len())?;
+    move_midway(&label, &mut surface, &fraction, &fans, execution)?;
+    reach(&label, &mut surface, &fraction, &fans, execution)?;
+    drop((fans, fraction));
     turn_outward(&surface.points, &mut surface.triangles)?;
     execution.stage("Remeshing", 0.65, 0.94, 1)?;
     let wanted = match edge_length {

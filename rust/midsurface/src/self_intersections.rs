@@ -9,13 +9,14 @@
 //! Only rims are looked at, in the cells of a grid, so that it costs little where nothing touches.
 
 use crate::buckets::Buckets;
+use crate::cells::{bounds, near, overlap, Cells};
 use crate::error::{collected, extend, zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, floor, sub, Vec3};
+use crate::grid::{along, sub};
 use crate::halfedge::{Fans, NONE};
 use crate::manifold::{make_manifold, Surface};
 use crate::scraps::drop_scraps;
-use crate::touching::{touch, TOUCHING};
+use crate::touching::touch;
 
 /// Share of the way to the points next to the rim that a rim point is drawn back in a step, and the
 /// most steps: in all about half of the way.
@@ -25,10 +26,6 @@ const STEPS: usize = 6;
 const CUTS: usize = 8;
 /// How far from a rim that is drawn back others may begin to touch, in lengths of an edge.
 const REACH: f64 = 1.5;
-/// Side of a cell, in mean sizes of a triangle; larger where the grid would have more than so many
-/// cells a triangle.
-const SIDE: f64 = 1.5;
-const CELLS: usize = 4;
 /// Triangles or points handed to a worker at a time.
 const PIECE: usize = 4096;
 /// Passes over the triangles that [`remove_self_intersections`] makes where nothing touches, for its
@@ -52,7 +49,7 @@ pub(crate) fn remove_self_intersections(
         if touching.is_empty() {
             break;
         }
-        let near = near(surface, &touching, REACH * edge)?;
+        let near = near(surface, touching.as_flattened(), REACH * edge)?;
         let rims = (&fans, on_rim.as_slice());
         let left = draw_back(surface, rims, &near, touching, component, execution)?;
         if left.is_empty() {
@@ -138,31 +135,6 @@ fn touching(
     Ok(pairs)
 }
 
-/// The triangles within `reach` of pairs that touch, as far as drawing those back can make others
-/// touch.
-fn near(surface: &Surface, touching: &[[u32; 2]], reach: f64) -> Result<Vec<u32>> {
-    let touching = touching.as_flattened();
-    let cells = Cells::around(surface, touching, reach);
-    let wider = |t: u32| {
-        let [low, high] = bounds(surface, t);
-        [low.map(|v| v - reach), high.map(|v| v + reach)]
-    };
-    let entries = || {
-        let of = |&t: &u32| cells.reached_by(wider(t)).map(move |cell| (cell, t));
-        touching.iter().flat_map(of)
-    };
-    let in_cell = Buckets::new(cells.count(), entries)?;
-    let is_near = |&t: &u32| {
-        let own = bounds(surface, t);
-        let mut around = cells
-            .reached_by(own)
-            .flat_map(|cell| in_cell.of(cell as usize));
-        around.any(|&other| overlap(own, wider(other)))
-    };
-    let all = 0..surface.triangles.len() as u32;
-    collected(all.filter(is_near))
-}
-
 /// Draws the rims of pairs that touch back; returns the pairs that touch in the end.
 fn draw_back(
     surface: &mut Surface,
@@ -242,75 +214,11 @@ fn cut_away(
     Ok(())
 }
 
-/// Lower and upper corner of what encloses a triangle, with room for touching.
-fn bounds(surface: &Surface, t: u32) -> [Vec3; 2] {
-    let [a, b, c] = surface.triangles[t as usize].map(|p| surface.points[p as usize]);
-    [
-        std::array::from_fn(|k| a[k].min(b[k]).min(c[k]) - TOUCHING),
-        std::array::from_fn(|k| a[k].max(b[k]).max(c[k]) + TOUCHING),
-    ]
-}
-
-fn overlap([low, high]: [Vec3; 2], [other_low, other_high]: [Vec3; 2]) -> bool {
-    (0..3).all(|k| high[k] >= other_low[k] && other_high[k] >= low[k])
-}
-
-/// A grid of cubes around some triangles.
-struct Cells {
-    low: Vec3,
-    side: f64,
-    dimensions: [usize; 3],
-}
-
-impl Cells {
-    /// A grid that reaches `margin` beyond the triangles.
-    fn around(surface: &Surface, triangles: &[u32], margin: f64) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        let mut size = 0.0;
-        for &t in triangles {
-            let [from, to] = bounds(surface, t);
-            low = std::array::from_fn(|k| low[k].min(from[k]));
-            high = std::array::from_fn(|k| high[k].max(to[k]));
-            size += (0..3).map(|k| to[k] - from[k]).fold(0.0, f64::max);
-        }
-        let low = low.map(|v| v - margin);
-        let extent = sub(high.map(|v| v + margin), low);
-        let most = CELLS * surface.triangles.len();
-        let least = (extent.iter().product::<f64>() / most as f64).cbrt();
-        let side = least.max(SIDE * size / triangles.len() as f64);
-        Self {
-            low,
-            side,
-            dimensions: extent.map(|v| (v / side) as usize + 1),
-        }
-    }
-
-    fn count(&self) -> usize {
-        self.dimensions.iter().product()
-    }
-
-    /// The cells that a box reaches into; none where it lies beyond the grid.
-    fn reached_by(&self, [low, high]: [Vec3; 2]) -> impl Iterator<Item = u32> {
-        let [nx, ny, nz] = self.dimensions;
-        let range = |k: usize, n: usize| {
-            let at = |v: f64| floor((v - self.low[k]) / self.side);
-            let first = at(low[k]).max(0) as usize;
-            let end = (at(high[k]) + 1).clamp(0, n as isize) as usize;
-            first..end
-        };
-        let (x, y, z) = (range(0, nx), range(1, ny), range(2, nz));
-        z.flat_map(move |z| {
-            let x = x.clone();
-            y.clone()
-                .flat_map(move |y| x.clone().map(move |x| ((z * ny + y) * nx + x) as u32))
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::execution::Quiet;
+    use crate::grid::Vec3;
 
     /// Adds a lattice of squares with sides of 1, each cut in two.
     fn add_lattice(surface: &mut Surface, sides: [u32; 2], place: impl Fn(f64, f64) -> Vec3) {

@@ -13,7 +13,7 @@ use crate::sheet::{by_offset, dot, Sheet};
 
 /// Neighbours that speak of the same sheet: normals within this cosine, offsets within this many
 /// work units of the one in the middle.
-const ALIKE: f32 = 0.6;
+const ALIKE: f32 = 0.7;
 const NEAR: f32 = 0.7;
 
 /// Lets the sheets settle, so many times.
