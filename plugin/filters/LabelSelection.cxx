@@ -112,12 +112,6 @@ void LabelSelection::Update(const ArrayFinder& find, vtkDataObject* input, int t
 }
 
 //------------------------------------------------------------------------------
-void LabelSelection::Read(const ArrayFinder& find, vtkDataObject* input, int threads)
-{
-  this->Scanned = this->Scan(find, input, threads);
-}
-
-//------------------------------------------------------------------------------
 std::vector<LabelSelection::ScannedArray> LabelSelection::Scan(
   const ArrayFinder& find, vtkDataObject* input, int threads) const
 {

@@ -39,9 +39,6 @@ public:
    */
   void Update(const ArrayFinder& find, vtkDataObject* input, int threads);
 
-  /** Reads the arrays of `input` for Apply, and leaves `Found` as it is. */
-  void Read(const ArrayFinder& find, vtkDataObject* input, int threads);
-
   /** To be called after every change of `Requested`; the arguments as for Update. */
   void RequestChanged(const ArrayFinder& find, vtkDataObject* input);
 

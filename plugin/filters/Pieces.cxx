@@ -1,20 +1,15 @@
 #include "Pieces.h"
 
-#include "ArrayValues.h"
 #include "BlockRun.h"
 #include "SegmentationVolume.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
-#include "vtkDataSetAttributes.h"
-#include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMultiProcessController.h"
-#include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkStructuredData.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -53,8 +48,6 @@ struct Header
   }
 };
 constexpr vtkIdType headerLength = sizeof(Header) / sizeof(double);
-/** MPI counts what it gathers in the type int. */
-constexpr vtkIdType mostValues = VTK_INT_MAX;
 
 Header Describe(vtkInformation* source, vtkImageData* piece, const ChosenArray& chosen)
 {
@@ -98,28 +91,6 @@ vtkIdType Size(const int extent[6])
     (extent[5] - extent[4] + 1);
 }
 
-/** Copies the values of one piece, which begin at `start` in `received`, to their place. */
-vtkIdType Place(const Header& header, const int whole[6], vtkDataArray* received, vtkIdType start,
-  vtkDataArray* joined)
-{
-  int points[6];
-  int own[6];
-  std::copy_n(header.Extent, 6, points);
-  ValueExtent(header, points, own);
-  const vtkIdType row = own[1] - own[0] + 1;
-  for (int z = own[4]; z <= own[5]; ++z)
-  {
-    for (int y = own[2]; y <= own[3]; ++y)
-    {
-      const int at[3] = { own[0], y, z };
-      joined->InsertTuples(
-        vtkStructuredData::ComputePointIdForExtent(whole, at), row, start, received);
-      start += row;
-    }
-  }
-  return start;
-}
-
 /** Whether the pieces lie in `whole` and are, taken together, as many cells. */
 bool FillWhole(const std::vector<Header>& headers, const int whole[6])
 {
@@ -155,24 +126,6 @@ void CheckFit(const std::vector<Header>& headers, const int whole[6])
       "The segmentation is spread over several processes, whose parts do not "
       "make up one image: save it to a file and open that.");
   }
-}
-
-void CheckSize(const int whole[6])
-{
-  if (Size(whole) > mostValues)
-  {
-    throw std::runtime_error("The segmentation has " + std::to_string(Size(whole)) +
-      " voxels; spread over several processes this filter takes " + std::to_string(mostValues) +
-      " at most. Run with one process, or use Mid-Surface.");
-  }
-}
-
-vtkSmartPointer<vtkDataArray> MakeArray(const Header& header, const char* name)
-{
-  auto array = vtkSmartPointer<vtkDataArray>::Take(
-    vtkDataArray::CreateDataArray(static_cast<int>(header.DataType)));
-  array->SetName(name);
-  return array;
 }
 
 vtkSmartPointer<vtkImageData> MakeImage(const Header& header, const int whole[6])
@@ -212,25 +165,9 @@ int Pieces::Result(vtkInformation* output, int result)
 }
 
 //------------------------------------------------------------------------------
-bool Pieces::HasToWork(const BlockRun& run, vtkInformation* output, vtkDataSet* input)
+bool Pieces::HasToWork(const BlockRun& run, vtkInformation* output)
 {
-  if (run.HasBlocks())
-  {
-    return true;
-  }
-  const int own = !Pieces::IsFirst(output) && input && input->GetNumberOfCells() > 0 ? 1 : 0;
-  int any = own;
-  if (Pieces::AreShared(output))
-  {
-    Controller()->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
-  }
-  if (any)
-  {
-    throw std::runtime_error(
-      "The input is spread over several processes, but this filter needs all "
-      "of it in the first: save it to one file and open that.");
-  }
-  return Pieces::IsFirst(output);
+  return run.HasBlocks() || Pieces::IsFirst(output);
 }
 
 //------------------------------------------------------------------------------
@@ -247,46 +184,4 @@ vtkSmartPointer<vtkImageData> Pieces::Frame(
   CheckFit(headers, whole);
   association = static_cast<int>(headers.front().Association);
   return MakeImage(headers.front(), whole);
-}
-
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkImageData> Pieces::Join(
-  vtkInformation* source, vtkImageData* piece, const ChosenArray& chosen, bool everywhere)
-{
-  const Header own = Describe(source, piece, chosen);
-  const std::vector<Header> headers = GatherHeaders(own);
-  if (headers.empty())
-  {
-    return nullptr;
-  }
-  int whole[6];
-  std::copy_n(headers.front().Whole, 6, whole);
-  CheckFit(headers, whole);
-  CheckSize(whole);
-  const char* name = own.IsEmpty() ? chosen.Name.c_str() : chosen.Array->GetName();
-  auto empty = MakeArray(headers.front(), nullptr);
-  auto received = MakeArray(headers.front(), nullptr);
-  vtkDataArray* sent = own.IsEmpty() ? empty.Get() : chosen.Labels();
-  const bool isReceiver = everywhere || Controller()->GetLocalProcessId() == first;
-  if (everywhere ? !Controller()->AllGatherV(sent, received)
-                 : !Controller()->GatherV(sent, received, first))
-  {
-    throw std::runtime_error("The processes could not send each other their parts.");
-  }
-  if (!isReceiver)
-  {
-    return nullptr;
-  }
-  auto image = MakeImage(headers.front(), whole);
-  auto joined = MakeArray(headers.front(), name);
-  int values[6];
-  ValueExtent(headers.front(), whole, values);
-  AllocateTuples(joined, static_cast<size_t>(Size(values)));
-  vtkIdType start = 0;
-  for (const Header& header : headers)
-  {
-    start = Place(header, values, received, start, joined);
-  }
-  image->GetAttributes(static_cast<int>(headers.front().Association))->SetScalars(joined);
-  return image;
 }

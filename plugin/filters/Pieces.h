@@ -3,7 +3,6 @@
 
 #include "vtkSmartPointer.h"
 
-class vtkDataSet;
 class vtkImageData;
 class vtkInformation;
 class BlockRun;
@@ -31,11 +30,10 @@ bool IsFirst(vtkInformation* output);
 int Result(vtkInformation* output, int result);
 
 /**
- * Whether this process works on `input` by itself: on a block of its own, or as the first on all.
- * @throws std::runtime_error in all processes where another than the first has cells, unless `run`
- * is one on blocks.
+ * Whether this process works by itself, on a block of its own or as the first on all, where the
+ * pieces are not AreShared.
  */
-bool HasToWork(const BlockRun& run, vtkInformation* output, vtkDataSet* input);
+bool HasToWork(const BlockRun& run, vtkInformation* output);
 
 /**
  * The image that the pieces of the array `chosen` make up, without any array; null where all pieces
@@ -44,15 +42,6 @@ bool HasToWork(const BlockRun& run, vtkInformation* output, vtkDataSet* input);
  */
 vtkSmartPointer<vtkImageData> Frame(
   vtkInformation* source, vtkImageData* piece, const ChosenArray& chosen, int& association);
-
-/**
- * The array `chosen` of all pieces in an image of its own; null where all pieces lack it. `piece`
- * may be empty, and comes from `source`. Without `everywhere` only the first process gets the
- * image.
- * @throws std::runtime_error in all processes where the pieces do not fit together.
- */
-vtkSmartPointer<vtkImageData> Join(
-  vtkInformation* source, vtkImageData* piece, const ChosenArray& chosen, bool everywhere);
 } // namespace Pieces
 
 #endif

@@ -6,6 +6,7 @@
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkIdTypeArray.h"
 #include "vtkLongLongArray.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -13,6 +14,7 @@
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -44,6 +46,16 @@ void CopyPoints(const ValueType* values, size_t count, vtkPolyData* output)
   points->SetData(CopyArray<ArrayType>("Points", values, count, 3));
   output->SetPoints(points);
 }
+
+vtkSmartPointer<vtkIdTypeArray> NumberFrom(const char* name, uint64_t first, size_t count)
+{
+  auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
+  numbers->SetName(name);
+  AllocateTuples(numbers, count);
+  vtkIdType* begin = numbers->GetPointer(0);
+  std::iota(begin, begin + count, static_cast<vtkIdType>(first));
+  return numbers;
+}
 } // namespace
 
 //------------------------------------------------------------------------------
@@ -73,6 +85,16 @@ void CopyMesh(const midsurface_mesh_arrays& mesh, vtkPolyData* output)
 }
 
 //------------------------------------------------------------------------------
+void CopyMeshPiece(const midsurface_mesh_arrays& mesh, vtkPolyData* output)
+{
+  CopyMesh(mesh, output);
+  output->GetPointData()->SetGlobalIds(
+    NumberFrom("GlobalPointIds", mesh.first_point, mesh.point_count));
+  output->GetCellData()->SetGlobalIds(
+    NumberFrom("GlobalCellIds", mesh.first_triangle, mesh.triangle_count));
+}
+
+//------------------------------------------------------------------------------
 void CopyPolylines(const midsurface_polyline_arrays& polylines, vtkPolyData* output)
 {
   CopyPoints<vtkDoubleArray>(polylines.points, polylines.point_count, output);
@@ -98,10 +120,14 @@ void CopyPolylines(const midsurface_polyline_arrays& polylines, vtkPolyData* out
 }
 
 //------------------------------------------------------------------------------
-PolylineInput::PolylineInput(vtkPolyData* input)
+PolylineInput::PolylineInput(vtkPolyData* input, bool mayBeEmpty)
   : Input(input)
 {
   this->View.line_count = static_cast<size_t>(input->GetNumberOfLines());
+  if (this->View.line_count == 0 && mayBeEmpty)
+  {
+    return;
+  }
   if (this->View.line_count == 0)
   {
     throw std::runtime_error(

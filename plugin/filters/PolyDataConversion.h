@@ -14,6 +14,12 @@ class vtkPolyData;
 void CopyMesh(const midsurface_mesh_arrays& mesh, vtkPolyData* output);
 
 /**
+ * The same for the part of a mesh that this process holds, with the numbers of its points and
+ * triangles among those of all: global ids, points `GlobalPointIds` and cells `GlobalCellIds`.
+ */
+void CopyMeshPiece(const midsurface_mesh_arrays& mesh, vtkPolyData* output);
+
+/**
  * Copies polylines, once: points `Thickness` and `BorderDistance`, cells `Label`, `Component` and
  * `Slice`.
  */
@@ -26,8 +32,11 @@ void CopyPolylines(const midsurface_polyline_arrays& polylines, vtkPolyData* out
 class PolylineInput
 {
 public:
-  /** @throws std::runtime_error with a message for the user where `input` cannot be used. */
-  explicit PolylineInput(vtkPolyData* input);
+  /**
+   * Where `mayBeEmpty`, other processes may have the lines.
+   * @throws std::runtime_error with a message for the user where `input` cannot be used.
+   */
+  PolylineInput(vtkPolyData* input, bool mayBeEmpty);
 
   const midsurface_polyline_arrays& Arrays() const { return this->View; }
 

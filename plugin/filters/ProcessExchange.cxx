@@ -2,6 +2,7 @@
 
 #include "midsurface.hpp"
 
+#include "vtkCommunicator.h"
 #include "vtkMultiProcessController.h"
 #include "vtkMultiThreader.h"
 
@@ -72,6 +73,15 @@ void ProcessExchange::Guard(const std::function<void()>& preparation) const
     midsurface::Abandon(this->Target, error.what());
     throw;
   }
+}
+
+//------------------------------------------------------------------------------
+bool ProcessExchange::Any(bool own) const
+{
+  const int one = own ? 1 : 0;
+  int any = one;
+  Controller()->AllReduce(&one, &any, 1, vtkCommunicator::MAX_OP);
+  return any != 0;
 }
 
 //------------------------------------------------------------------------------

@@ -25,6 +25,9 @@ public:
   /** Whether this process is the one that speaks for all. */
   bool IsFirst() const { return this->Target.process == 0; }
 
+  /** Whether any process says so. All processes have to call this at once. */
+  bool Any(bool own) const;
+
   /**
    * The number of threads where `wanted` are asked for: for 0, this machine's cores, shared among
    * the processes on it, or 0 where this one is bound to cores of its own. All processes have to

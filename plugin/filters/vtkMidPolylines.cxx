@@ -2,6 +2,7 @@
 
 #include "FilterRun.h"
 #include "PolyDataConversion.h"
+#include "ProcessExchange.h"
 #include "SegmentationVolume.h"
 
 #include "vtkInformation.h"
@@ -41,5 +42,14 @@ void vtkMidPolylines::Extract(
 {
   const midsurface::Polylines polylines =
     midsurface::ExtractPolylines(volume.Description(), run.Options);
+  CopyPolylines(midsurface::Arrays(polylines), vtkPolyData::SafeDownCast(output));
+}
+
+//------------------------------------------------------------------------------
+void vtkMidPolylines::ExtractPiece(
+  FilterRun& run, const SharedVolume& shared, vtkDataObject* output)
+{
+  const midsurface::Polylines polylines =
+    midsurface::ExtractPolylinesPiece(shared.Piece, shared.Exchange.Functions(), run.Options);
   CopyPolylines(midsurface::Arrays(polylines), vtkPolyData::SafeDownCast(output));
 }

@@ -39,6 +39,7 @@ protected:
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) override;
+  void ExtractPiece(FilterRun& run, const SharedVolume& shared, vtkDataObject* output) override;
 
 private:
   vtkMidPolylines(const vtkMidPolylines&) = delete;

@@ -2,6 +2,7 @@
 
 #include "FilterRun.h"
 #include "PolyDataConversion.h"
+#include "ProcessExchange.h"
 #include "SegmentationVolume.h"
 
 #include "vtkInformation.h"
@@ -60,10 +61,11 @@ void vtkMidSurfaceFilter::Extract(
 }
 
 //------------------------------------------------------------------------------
-void vtkMidSurfaceFilter::ExtractPiece(FilterRun& run, const midsurface_piece& piece,
-  const midsurface_exchange& exchange, vtkDataObject* output)
+void vtkMidSurfaceFilter::ExtractPiece(
+  FilterRun& run, const SharedVolume& shared, vtkDataObject* output)
 {
   this->SetOptions(run);
-  const midsurface::Mesh mesh = midsurface::ExtractPiece(piece, exchange, run.Options);
-  CopyMesh(midsurface::Arrays(mesh), vtkPolyData::SafeDownCast(output));
+  const midsurface::Mesh mesh =
+    midsurface::ExtractPiece(shared.Piece, shared.Exchange.Functions(), run.Options);
+  CopyMeshPiece(midsurface::Arrays(mesh), vtkPolyData::SafeDownCast(output));
 }

@@ -63,9 +63,7 @@ protected:
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) override;
-  bool CanExtractPieces() const override { return true; }
-  void ExtractPiece(FilterRun& run, const midsurface_piece& piece,
-    const midsurface_exchange& exchange, vtkDataObject* output) override;
+  void ExtractPiece(FilterRun& run, const SharedVolume& shared, vtkDataObject* output) override;
 
   int Method = RIDGE_SURFACE;
   double EdgeLength = 0.0;

@@ -126,8 +126,8 @@ std::vector<Row> MeasureAll(const BlockRun& run, vtkInformation* output, vtkPoly
 {
   if (run.HasBlocks() || !Pieces::AreShared(output))
   {
-    return Pieces::HasToWork(run, output, input) ? midsurface::Measure(TriangleInput(input).Mesh())
-                                                 : std::vector<Row>();
+    return Pieces::HasToWork(run, output) ? midsurface::Measure(TriangleInput(input).Mesh())
+                                          : std::vector<Row>();
   }
   const ProcessExchange exchange;
   std::optional<TriangleInput> triangles;

@@ -4,6 +4,7 @@
 #include "FilterRun.h"
 #include "Pieces.h"
 #include "PolyDataConversion.h"
+#include "ProcessExchange.h"
 
 #include "vtkFieldData.h"
 #include "vtkInformationVector.h"
@@ -11,6 +12,27 @@
 #include "vtkPolyData.h"
 
 vtkStandardNewMacro(vtkPolylineZipper);
+
+namespace
+{
+midsurface::Polylines ReadLines(vtkPolyData* input, bool mayBeEmpty)
+{
+  const PolylineInput lines(input, mayBeEmpty);
+  return midsurface::MakePolylines(lines.Arrays());
+}
+
+/** Each process joins the lines that it has. */
+void ZipTogether(FilterRun& run, int threads, vtkPolyData* input, vtkPolyData* output)
+{
+  const ProcessExchange exchange;
+  run.Options.Threads = static_cast<uint32_t>(exchange.ShareThreads(threads));
+  const bool haveLines = exchange.Any(input->GetNumberOfLines() > 0);
+  midsurface::Polylines lines;
+  exchange.Guard([&] { lines = ReadLines(input, haveLines || !exchange.IsFirst()); });
+  const midsurface::Mesh mesh = midsurface::ZipPiece(lines, exchange.Functions(), run.Options);
+  CopyMeshPiece(midsurface::Arrays(mesh), output);
+}
+} // namespace
 
 //------------------------------------------------------------------------------
 vtkPolylineZipper::vtkPolylineZipper()
@@ -35,14 +57,16 @@ int vtkPolylineZipper::RequestData(
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   vtkInformation* outputInformation = outputVector->GetInformationObject(0);
   const int result = FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
-    if (!Pieces::HasToWork(*this->Run, outputInformation, input))
+    if (!this->Run->HasBlocks() && Pieces::AreShared(outputInformation))
     {
-      return;
+      ZipTogether(run, this->Threads, input, output);
     }
-    const PolylineInput lines(input);
-    const midsurface::Polylines polylines = midsurface::MakePolylines(lines.Arrays());
-    const midsurface::Mesh mesh = midsurface::Zip(polylines, run.Options);
-    CopyMesh(midsurface::Arrays(mesh), output);
+    else if (Pieces::HasToWork(*this->Run, outputInformation))
+    {
+      const midsurface::Polylines lines = ReadLines(input, false);
+      const midsurface::Mesh mesh = midsurface::Zip(lines, run.Options);
+      CopyMesh(midsurface::Arrays(mesh), output);
+    }
     output->GetFieldData()->PassData(input->GetFieldData());
   });
   return Pieces::Result(outputInformation, result);

@@ -2,6 +2,7 @@
 
 #include "ArrayValues.h"
 #include "FilterRun.h"
+#include "ProcessExchange.h"
 #include "SegmentationVolume.h"
 
 #include "vtkCellData.h"
@@ -12,7 +13,41 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 
+#include <optional>
+
 vtkStandardNewMacro(vtkRidgeField);
+
+namespace
+{
+/** The arrays that the filter adds, of one value a voxel. */
+struct Fields
+{
+  explicit Fields(size_t length)
+  {
+    this->Distance->SetName("Distance");
+    AllocateTuples(this->Distance, length);
+    this->Ridge->SetName("RidgeField");
+    AllocateTuples(this->Ridge, length);
+  }
+
+  /** Makes `output` the image of `volume` with these arrays, at this spacing. */
+  void AddTo(const SegmentationVolume& volume, const double spacing[3], vtkImageData* output) const
+  {
+    output->ShallowCopy(volume.Image());
+    output->SetSpacing(spacing);
+    vtkDataSetAttributes* fields = output->GetPointData();
+    if (volume.OnCells())
+    {
+      fields = output->GetCellData();
+    }
+    fields->AddArray(this->Distance);
+    fields->AddArray(this->Ridge);
+  }
+
+  vtkNew<vtkFloatArray> Distance;
+  vtkNew<vtkFloatArray> Ridge;
+};
+} // namespace
 
 //------------------------------------------------------------------------------
 vtkRidgeField::vtkRidgeField() = default;
@@ -42,23 +77,22 @@ int vtkRidgeField::FillOutputPortInformation(int, vtkInformation* info)
 //------------------------------------------------------------------------------
 void vtkRidgeField::Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output)
 {
-  vtkNew<vtkFloatArray> distance;
-  distance->SetName("Distance");
-  AllocateTuples(distance, volume.Description().length);
-  vtkNew<vtkFloatArray> ridge;
-  ridge->SetName("RidgeField");
-  AllocateTuples(ridge, volume.Description().length);
-  midsurface::RidgeField(volume.Description(), distance->GetPointer(0), ridge->GetPointer(0),
-    volume.Description().length, run.Options);
+  const Fields fields(volume.Description().length);
+  midsurface::RidgeField(volume.Description(), fields.Distance->GetPointer(0),
+    fields.Ridge->GetPointer(0), volume.Description().length, run.Options);
+  fields.AddTo(volume, volume.Description().spacing, vtkImageData::SafeDownCast(output));
+}
 
-  vtkImageData* image = vtkImageData::SafeDownCast(output);
-  image->ShallowCopy(volume.Image());
-  image->SetSpacing(volume.Description().spacing);
-  vtkDataSetAttributes* fields = image->GetPointData();
-  if (volume.OnCells())
+//------------------------------------------------------------------------------
+void vtkRidgeField::ExtractPiece(FilterRun& run, const SharedVolume& shared, vtkDataObject* output)
+{
+  const size_t length = shared.Piece.volume.length;
+  std::optional<Fields> fields;
+  shared.Exchange.Guard([&] { fields.emplace(length); });
+  midsurface::RidgeFieldPiece(shared.Piece, shared.Exchange.Functions(),
+    fields->Distance->GetPointer(0), fields->Ridge->GetPointer(0), length, run.Options);
+  if (shared.Volume)
   {
-    fields = image->GetCellData();
+    fields->AddTo(*shared.Volume, shared.Piece.volume.spacing, vtkImageData::SafeDownCast(output));
   }
-  fields->AddArray(distance);
-  fields->AddArray(ridge);
 }

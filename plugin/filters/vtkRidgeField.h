@@ -36,6 +36,7 @@ protected:
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) override;
+  void ExtractPiece(FilterRun& run, const SharedVolume& shared, vtkDataObject* output) override;
 
 private:
   vtkRidgeField(const vtkRidgeField&) = delete;

@@ -16,7 +16,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkNew.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -37,11 +37,6 @@ const int* WholeExtent(vtkInformationVector** inputVector, vtkImageData* input)
     isPiece = whole[2 * axis] <= own[2 * axis] && own[2 * axis + 1] <= whole[2 * axis + 1];
   }
   return isPiece ? whole : own;
-}
-
-bool IsImage(vtkInformation* output)
-{
-  return vtkImageData::SafeDownCast(vtkDataObject::GetData(output)) != nullptr;
 }
 
 constexpr const char* noVoxels = "The input has no voxels: the output is empty.";
@@ -73,21 +68,6 @@ midsurface_piece DescribePiece(
   std::copy_n(all.spacing, 3, piece.volume.spacing);
   std::copy_n(all.origin, 3, piece.volume.origin);
   return piece;
-}
-
-/** Leaves of `field`, made of a whole image, what belongs to `piece`, beside what that holds. */
-void CutOut(vtkImageData* field, vtkImageData* piece)
-{
-  field->Crop(piece->GetExtent());
-  for (const int association :
-    { vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataObject::FIELD_ASSOCIATION_CELLS })
-  {
-    vtkDataSetAttributes* made = field->GetAttributes(association);
-    vtkNew<vtkFieldData> kept;
-    kept->PassData(made);
-    made->PassData(piece->GetAttributes(association));
-    made->vtkFieldData::PassData(kept);
-  }
 }
 } // namespace
 
@@ -136,29 +116,10 @@ public:
       self->GetInputDataObject(0, 0), self->Threads);
   }
 
-  /** All of the image of which `input` may be the piece of this process. */
-  vtkSmartPointer<vtkImageData> FindWhole(vtkSegmentationFilter* self, vtkInformation* source,
-    vtkImageData* input, vtkInformation* output)
+  /** Whether each process holds a piece of the image, so that all have to work together. */
+  bool IsShared(vtkInformation* output) const
   {
-    if (!input || this->Run.HasBlocks() || !Pieces::AreShared(output))
-    {
-      return input;
-    }
-    vtkSmartPointer<vtkImageData> whole =
-      Pieces::Join(source, input, Find(self, input), IsImage(output));
-    if (!whole)
-    {
-      return input;
-    }
-    this->Labels.Read(
-      [self](vtkImageData* image) { return Find(self, image); }, whole, self->Threads);
-    return whole;
-  }
-
-  /** Each process works on its own blocks, and one on the surface of an image that all share. */
-  bool HasToWork(vtkInformation* output) const
-  {
-    return this->Run.HasBlocks() || Pieces::IsFirst(output) || IsImage(output);
+    return !this->Run.HasBlocks() && Pieces::AreShared(output);
   }
 };
 
@@ -307,29 +268,37 @@ int vtkSegmentationFilter::RequestUpdateExtent(
 int vtkSegmentationFilter::RequestData(
   vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  const bool isShared = this->CanExtractPieces() && !this->Internals->Run.HasBlocks() &&
-    Pieces::AreShared(outputVector->GetInformationObject(0));
-  return isShared ? this->RequestShare(inputVector, outputVector)
-                  : this->RequestAll(inputVector, outputVector);
+  vtkInformation* outputInformation = outputVector->GetInformationObject(0);
+  const int result = this->Internals->IsShared(outputInformation)
+    ? this->RequestShare(inputVector, outputVector)
+    : this->RequestAll(inputVector, outputVector);
+  vtkImageData* image = vtkImageData::SafeDownCast(vtkDataObject::GetData(outputVector));
+  vtkImageData* piece = vtkImageData::GetData(inputVector[0]);
+  if (image && piece && image->GetNumberOfPoints() == 0)
+  {
+    // An image that lacks the extent that was asked for would be asked for again and again, each
+    // time with the same message.
+    image->CopyStructure(piece);
+  }
+  return Pieces::Result(outputInformation, result);
 }
 
 //------------------------------------------------------------------------------
 int vtkSegmentationFilter::RequestAll(
   vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkImageData* piece = vtkImageData::GetData(inputVector[0]);
+  vtkImageData* input = vtkImageData::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
   vtkInformation* outputInformation = outputVector->GetInformationObject(0);
-  const int result = FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
-    const vtkSmartPointer<vtkImageData> input = this->Internals->FindWhole(
-      this, inputVector[0]->GetInformationObject(0), piece, outputInformation);
-    if (!this->Internals->HasToWork(outputInformation))
+  const BlockRun& blocks = this->Internals->Run;
+  return FilterRun::Execute(this, this->Threads, output, [=, &blocks](FilterRun& run) {
+    if (!Pieces::HasToWork(blocks, outputInformation) && !vtkImageData::SafeDownCast(output))
     {
       return;
     }
     if (!input || input->GetNumberOfPoints() == 0)
     {
-      if (!this->Internals->Run.HasBlocks() && Pieces::IsFirst(outputInformation))
+      if (!blocks.HasBlocks() && Pieces::IsFirst(outputInformation))
       {
         run.Warn(noVoxels);
       }
@@ -344,10 +313,8 @@ int vtkSegmentationFilter::RequestAll(
     }
     this->Internals->Labels.Apply(run, volume);
     this->Extract(run, volume, output);
-    output->GetFieldData()->PassData(piece->GetFieldData());
+    output->GetFieldData()->PassData(input->GetFieldData());
   });
-  this->FitToRequest(vtkImageData::SafeDownCast(output), piece, outputInformation);
-  return Pieces::Result(outputInformation, result);
 }
 
 //------------------------------------------------------------------------------
@@ -357,7 +324,7 @@ int vtkSegmentationFilter::RequestShare(
   vtkImageData* input = vtkImageData::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
   vtkInformation* outputInformation = outputVector->GetInformationObject(0);
-  const int result = FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
+  return FilterRun::Execute(this, this->Threads, output, [=](FilterRun& run) {
     const ChosenArray chosen = vtkInternals::Find(this, input);
     int association = chosen.Association;
     const vtkSmartPointer<vtkImageData> whole =
@@ -387,33 +354,7 @@ int vtkSegmentationFilter::RequestShare(
     const midsurface_piece piece =
       DescribePiece(whole, association == vtkDataObject::FIELD_ASSOCIATION_CELLS,
         isStretched ? spacing.GetMeant() : whole->GetSpacing(), volume ? &*volume : nullptr);
-    this->ExtractPiece(run, piece, exchange.Functions(), output);
+    this->ExtractPiece(run, { piece, exchange, volume ? &*volume : nullptr }, output);
     output->GetFieldData()->PassData(input->GetFieldData());
   });
-  return Pieces::Result(outputInformation, result);
-}
-
-//------------------------------------------------------------------------------
-void vtkSegmentationFilter::ExtractPiece(
-  FilterRun&, const midsurface_piece&, const midsurface_exchange&, vtkDataObject*)
-{}
-
-//------------------------------------------------------------------------------
-void vtkSegmentationFilter::FitToRequest(
-  vtkImageData* output, vtkImageData* piece, vtkInformation* outputInformation)
-{
-  if (!output || !piece)
-  {
-    return;
-  }
-  if (output->GetNumberOfPoints() == 0)
-  {
-    // An image that lacks the extent that was asked for would be asked for again and again, each
-    // time with the same message.
-    output->CopyStructure(piece);
-  }
-  else if (Pieces::AreShared(outputInformation) && !this->Internals->Run.HasBlocks())
-  {
-    CutOut(output, piece);
-  }
 }

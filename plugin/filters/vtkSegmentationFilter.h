@@ -13,12 +13,10 @@
  * name, or both as in "3: outer membrane".
  *
  * Under MPI (a vtkMultiProcessController with many processes) all processes update the filter
- * together. What is made of a part of the volume depends on what lies around that part. A filter
- * that can, vtkMidSurfaceFilter, deals out the connected components: each process makes the output
- * of whole ones, and none ever holds the volume. For the others the first process collects the
- * labels of all and makes the whole output, the others make none; where the output is an image,
- * each process collects all labels and keeps its part of the output. Blocks of a collection are
- * worked on by the process that holds them.
+ * together. What is made of a part of the volume depends on what lies around that part, so the
+ * connected components are dealt out: each process makes the output of whole ones, and none ever
+ * holds the volume. Where the output is an image, each process works on all components near its
+ * piece. Blocks of a collection are worked on by the process that holds them.
  *
  * Bad input is reported by an error or warning of the filter, and the output is empty (an image
  * has no arrays). So it is, with a warning, after an abort.
@@ -32,9 +30,9 @@
 
 #include <memory>
 
-struct midsurface_exchange;
 struct midsurface_piece;
 class FilterRun;
+class ProcessExchange;
 class SegmentationVolume;
 class vtkDataArraySelection;
 class vtkDataObject;
@@ -130,15 +128,20 @@ protected:
   virtual void Extract(FilterRun& run, const SegmentationVolume& volume, vtkDataObject* output) = 0;
 
   /**
-   * Whether ExtractPiece may be called where many processes hold a piece each.
+   * What this process holds of a volume that all have in pieces, and how it reaches the others.
    */
-  virtual bool CanExtractPieces() const { return false; }
+  struct SharedVolume
+  {
+    const midsurface_piece& Piece;
+    const ProcessExchange& Exchange;
+    /** Null where this process holds no voxel. */
+    const SegmentationVolume* Volume;
+  };
 
   /**
    * Fills `output` with this process's share. All processes call it at once.
    */
-  virtual void ExtractPiece(FilterRun& run, const midsurface_piece& piece,
-    const midsurface_exchange& exchange, vtkDataObject* output);
+  virtual void ExtractPiece(FilterRun& run, const SharedVolume& shared, vtkDataObject* output) = 0;
 
   int Threads = 0;
   int Spacing = AUTOMATIC;
@@ -151,7 +154,6 @@ private:
 
   int RequestAll(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   int RequestShare(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
-  void FitToRequest(vtkImageData* output, vtkImageData* piece, vtkInformation* outputInformation);
   void LabelsChanged();
   void RunStarts();
 

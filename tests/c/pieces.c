@@ -66,11 +66,30 @@ typedef struct
   const midsurface_piece* piece;
   const midsurface_triangle_mesh* triangles;
   const char* excuse;
+  /* Whether the mesh is made by way of polylines. */
+  bool zips;
+  /* Room for the fields of the piece. */
+  float* distance;
+  float* ridge;
   midsurface_mesh* mesh;
   midsurface_statistics* table;
   midsurface_error* error;
   midsurface_status status;
 } Process;
+
+static void zip(Process* process, const midsurface_exchange* exchange)
+{
+  const midsurface_options options = midsurface_options_default();
+  midsurface_polylines* lines = NULL;
+  process->status =
+    midsurface_extract_polylines_piece(process->piece, exchange, &options, &lines, &process->error);
+  if (process->status == MIDSURFACE_STATUS_OK)
+  {
+    process->status =
+      midsurface_zip_piece(lines, exchange, &options, &process->mesh, &process->error);
+  }
+  midsurface_polylines_free(lines);
+}
 
 static int work(void* argument)
 {
@@ -91,6 +110,15 @@ static int work(void* argument)
   {
     process->status =
       midsurface_measure_pieces(process->triangles, &exchange, &process->table, &process->error);
+  }
+  else if (process->distance)
+  {
+    process->status = midsurface_ridge_field_piece(process->piece, &exchange, &options,
+      process->distance, process->ridge, process->piece->volume.length, &process->error);
+  }
+  else if (process->zips)
+  {
+    zip(process, &exchange);
   }
   else
   {
@@ -130,21 +158,37 @@ static midsurface_piece slices(const midsurface_volume* whole, size_t from, size
   return piece;
 }
 
-static void each_process_gets_whole_components(void)
+/* Both must fail, the second with what happened in the first. */
+static void check_failures(Process processes[2], const char* first, const char* second)
+{
+  run_both(processes);
+  const char* texts[] = { first, second };
+  for (int i = 0; i < 2; i++)
+  {
+    CHECK(texts[i] == NULL || strstr(midsurface_error_message(processes[i].error), texts[i]));
+    CHECK(processes[i].mesh == NULL);
+    midsurface_error_free(processes[i].error);
+  }
+}
+
+/* Both processes together make the mesh of the whole, each some of its two components. */
+static void check_components(bool zips, const midsurface_options* options)
 {
   static uint8_t scalars[VOXELS];
   const midsurface_volume whole = two_sheets(scalars);
-  const midsurface_options options = midsurface_options_default();
   const midsurface_piece pieces[] = { slices(&whole, 0, 7), slices(&whole, 6, DEPTH) };
-  Process processes[2] = { { .piece = &pieces[0] }, { .piece = &pieces[1] } };
+  Process processes[2] = { { .piece = &pieces[0], .zips = zips },
+    { .piece = &pieces[1], .zips = zips } };
   run_both(processes);
-  midsurface_mesh* all = extracted(&whole, &options);
+  midsurface_mesh* all = extracted(&whole, options);
   size_t points = 0, triangles = 0;
   for (int i = 0; i < 2; i++)
   {
     if (CHECK(processes[i].status == MIDSURFACE_STATUS_OK))
     {
       const midsurface_mesh_arrays arrays = arrays_of(processes[i].mesh);
+      CHECK(arrays.triangle_count > 0);
+      CHECK(arrays.first_point == points && arrays.first_triangle == triangles);
       points += arrays.point_count;
       triangles += arrays.triangle_count;
       for (size_t t = 1; t < arrays.triangle_count; t++)
@@ -156,7 +200,41 @@ static void each_process_gets_whole_components(void)
   }
   CHECK(points == arrays_of(all).point_count);
   CHECK(triangles == arrays_of(all).triangle_count);
+  CHECK(arrays_of(all).first_point == 0 && arrays_of(all).first_triangle == 0);
   midsurface_mesh_free(all);
+}
+
+static void each_process_gets_whole_components(void)
+{
+  midsurface_options options = midsurface_options_default();
+  check_components(false, &options);
+  options.method = MIDSURFACE_METHOD_POLYLINE_ZIPPER;
+  check_components(true, &options);
+}
+
+static void each_process_gets_the_fields_of_its_piece(void)
+{
+  static uint8_t scalars[VOXELS];
+  static float fields[2][VOXELS], expected[2][VOXELS];
+  const midsurface_volume whole = two_sheets(scalars);
+  const midsurface_options options = midsurface_options_default();
+  CHECK(midsurface_ridge_field(&whole, &options, expected[0], expected[1], VOXELS, NULL) ==
+    MIDSURFACE_STATUS_OK);
+  const midsurface_piece pieces[] = { slices(&whole, 0, 7), slices(&whole, 7, DEPTH) };
+  const size_t second = 7 * WIDTH * HEIGHT;
+  Process processes[2] = {
+    { .piece = &pieces[0], .distance = fields[0], .ridge = fields[1] },
+    { .piece = &pieces[1], .distance = fields[0] + second, .ridge = fields[1] + second },
+  };
+  run_both(processes);
+  CHECK(processes[0].status == MIDSURFACE_STATUS_OK && processes[1].status == MIDSURFACE_STATUS_OK);
+  CHECK(memcmp(fields, expected, sizeof fields) == 0);
+
+  midsurface_piece wrong = pieces[1];
+  wrong.volume.length -= 1;
+  Process failing[2] = { { .piece = &wrong, .distance = fields[0], .ridge = fields[1] },
+    { .piece = &pieces[1], .distance = fields[0] + second, .ridge = fields[1] + second } };
+  check_failures(failing, "its array holds", "process 0 failed");
 }
 
 static void a_process_may_have_no_piece(void)
@@ -172,19 +250,6 @@ static void a_process_may_have_no_piece(void)
     CHECK(processes[i].status == MIDSURFACE_STATUS_OK);
     CHECK(arrays_of(processes[i].mesh).triangle_count > 0);
     midsurface_mesh_free(processes[i].mesh);
-  }
-}
-
-/* Both must fail, the second with what happened in the first. */
-static void check_failures(Process processes[2], const char* first, const char* second)
-{
-  run_both(processes);
-  const char* texts[] = { first, second };
-  for (int i = 0; i < 2; i++)
-  {
-    CHECK(texts[i] == NULL || strstr(midsurface_error_message(processes[i].error), texts[i]));
-    CHECK(processes[i].mesh == NULL);
-    midsurface_error_free(processes[i].error);
   }
 }
 
@@ -266,6 +331,7 @@ static void an_exchange_that_cannot_be_used_is_refused(void)
 void test_pieces(void)
 {
   RUN(each_process_gets_whole_components);
+  RUN(each_process_gets_the_fields_of_its_piece);
   RUN(a_process_may_have_no_piece);
   RUN(a_failure_of_one_reaches_the_other);
   RUN(the_first_process_gets_the_table_of_all);

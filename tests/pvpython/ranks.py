@@ -38,10 +38,24 @@ def fetch(proxy):
     return servermanager.Fetch(proxy)
 
 
+def lines_in_order(lines):
+    """Every line with all that belongs to it, in an order of their own."""
+    starts = lines["lines offsets"]
+    on_points = np.column_stack(
+        [lines["points"], lines["point Thickness"], lines["point BorderDistance"]]
+    )
+    on_lines = np.column_stack([lines[f"cell {name}"] for name in ("Label", "Component", "Slice")])
+    of_line = [
+        np.concatenate([own, on_points[lines["lines"][start:end]].ravel()])
+        for own, start, end in zip(on_lines, starts, starts[1:])
+    ]
+    return {"lines": np.concatenate(sorted(of_line, key=lambda line: line.tobytes()))}
+
+
 def in_order(mesh):
     """The arrays of a mesh, its triangles with all that belongs to them in an order of their own."""
     if "point Normals" not in mesh:
-        return mesh
+        return lines_in_order(mesh)
     on_points = [mesh["points"], mesh["point Normals"], mesh["point Thickness"][:, None]]
     corners = np.hstack(on_points)[mesh["polys"]].reshape(len(mesh["cell Label"]), -1)
     rows = np.column_stack([mesh["cell Label"], mesh["cell Component"], corners])
@@ -104,6 +118,21 @@ def check_that_all_work(reader, processes):
     shares = fetch(simple.ProcessIdScalars(Input=simple.MidSurface(Input=reader)))
     owners = vtk_to_numpy(shares.GetPointData().GetArray("ProcessId"))
     assert len(set(owners)) == min(processes, 3), set(owners)
+
+
+def check_global_ids(reader, processes):
+    """All points and triangles are numbered through; with one process there is no need."""
+    for proxy in (
+        simple.MidSurface(Input=reader),
+        simple.PolylineZipper(Input=simple.MidPolylines(Input=reader)),
+    ):
+        mesh = fetch(proxy)
+        for data in (mesh.GetPointData(), mesh.GetCellData()):
+            ids = data.GetGlobalIds()
+            assert (ids is not None) == (processes > 1)
+            if ids:
+                numbers = np.sort(vtk_to_numpy(ids))
+                np.testing.assert_array_equal(numbers, np.arange(ids.GetNumberOfTuples()))
 
 
 def check_unequal_blocks():
@@ -191,6 +220,7 @@ def check(reader, on_cells, expected, processes):
         else:
             np.testing.assert_array_equal(found[name], expected[name], name)
     check_that_all_work(reader, processes)
+    check_global_ids(reader, processes)
     check_that_nobody_waits(reader)
     check_unequal_blocks()
     check_that_an_unreadable_array_is_explained(reader)

@@ -346,6 +346,14 @@ typedef struct midsurface_mesh_arrays {
    * then by size, the largest first; triangle_count values.
    */
   const int64_t *components;
+  /**
+   * Number of the first point among those of all processes; 0 where there is one.
+   */
+  uint64_t first_point;
+  /**
+   * Number of the first triangle among those of all processes; 0 where there is one.
+   */
+  uint64_t first_triangle;
 } midsurface_mesh_arrays;
 
 /**
@@ -662,6 +670,22 @@ enum midsurface_status midsurface_extract_polylines(const struct midsurface_volu
                                                     struct midsurface_error **error);
 
 /**
+ * Traces the mid-polylines of a label volume of which each of several processes holds a piece; each
+ * gets those of whole components, as for midsurface_extract_piece.
+ *
+ * piece: what this process holds, as described there.
+ * exchange: how it reaches the others.
+ * options: as described there.
+ * out: where the new polylines go.
+ * error: where an error goes; may be NULL.
+ */
+enum midsurface_status midsurface_extract_polylines_piece(const struct midsurface_piece *piece,
+                                                          const struct midsurface_exchange *exchange,
+                                                          const struct midsurface_options *options,
+                                                          struct midsurface_polylines **out,
+                                                          struct midsurface_error **error);
+
+/**
  * Makes polylines of arrays. The arrays are copied, a point as often as lines use it, and every
  * offset and index is checked, and that coordinates and thickness are finite.
  *
@@ -703,6 +727,22 @@ enum midsurface_status midsurface_zip(const struct midsurface_polylines *polylin
                                       struct midsurface_error **error);
 
 /**
+ * Joins the polylines that several processes have, those of each component on one of them. Each gets
+ * the mesh of its lines. All processes have to call this at once; where one fails, all do.
+ *
+ * polylines: the polylines of this process; they stay as they are.
+ * exchange: how it reaches the others.
+ * options: as described there.
+ * out: where the new mesh goes.
+ * error: where an error goes; may be NULL.
+ */
+enum midsurface_status midsurface_zip_piece(const struct midsurface_polylines *polylines,
+                                            const struct midsurface_exchange *exchange,
+                                            const struct midsurface_options *options,
+                                            struct midsurface_mesh **out,
+                                            struct midsurface_error **error);
+
+/**
  * Computes the distance to the nearest face of the label and the ridge field, whose crests are
  * the mid-surface.
  *
@@ -721,6 +761,26 @@ enum midsurface_status midsurface_ridge_field(const struct midsurface_volume *vo
                                               float *ridge,
                                               size_t length,
                                               struct midsurface_error **error);
+
+/**
+ * Computes distance and ridge field, as midsurface_ridge_field, of a label volume of which each of
+ * several processes holds a piece. All processes have to call this at once, with the same options;
+ * where one fails, all do.
+ *
+ * piece: what this process holds, as described there.
+ * exchange: how it reaches the others.
+ * options: as described there.
+ * distance, ridge, length: as for midsurface_ridge_field, of the piece; length 0 where the process
+ * holds no voxel.
+ * error: where an error goes; may be NULL. On failure the arrays' contents mean nothing.
+ */
+enum midsurface_status midsurface_ridge_field_piece(const struct midsurface_piece *piece,
+                                                    const struct midsurface_exchange *exchange,
+                                                    const struct midsurface_options *options,
+                                                    float *distance,
+                                                    float *ridge,
+                                                    size_t length,
+                                                    struct midsurface_error **error);
 
 /**
  * Measures a mesh: a row in total, then one for each label, in ascending order, followed by one

@@ -167,15 +167,26 @@ inline Mesh Extract(const midsurface_volume& volume, const Options& options = {}
   return detail::Make<Mesh>(midsurface_extract, &volume, options);
 }
 
+namespace detail
+{
+/// Makes a call that processes make together; `Function` takes the exchange after the input.
+template <typename Handle, typename Function, typename Input>
+Handle MakeTogether(Function function, const Input* input, const midsurface_exchange& exchange,
+  const Options& options)
+{
+  const auto together = [&](const Input* own, const midsurface_options* run,
+                          typename Handle::pointer* out, midsurface_error** error) {
+    return function(own, &exchange, run, out, error);
+  };
+  return Make<Handle>(together, input, options);
+}
+} // namespace detail
+
 /// The components of this process, of a volume that many hold in pieces.
 inline Mesh ExtractPiece(
   const midsurface_piece& piece, const midsurface_exchange& exchange, const Options& options = {})
 {
-  const auto extract = [&exchange](const midsurface_piece* input, const midsurface_options* run,
-                         midsurface_mesh** out, midsurface_error** error) {
-    return midsurface_extract_piece(input, &exchange, run, out, error);
-  };
-  return detail::Make<Mesh>(extract, &piece, options);
+  return detail::MakeTogether<Mesh>(midsurface_extract_piece, &piece, exchange, options);
 }
 
 /// Tells the other processes that this one does not make the call that they make, and why.
@@ -189,9 +200,24 @@ inline Polylines ExtractPolylines(const midsurface_volume& volume, const Options
   return detail::Make<Polylines>(midsurface_extract_polylines, &volume, options);
 }
 
+/// Those of this process's components, of a volume that many hold in pieces.
+inline Polylines ExtractPolylinesPiece(
+  const midsurface_piece& piece, const midsurface_exchange& exchange, const Options& options = {})
+{
+  return detail::MakeTogether<Polylines>(
+    midsurface_extract_polylines_piece, &piece, exchange, options);
+}
+
 inline Mesh Zip(const Polylines& polylines, const Options& options = {})
 {
   return detail::Make<Mesh>(midsurface_zip, polylines.get(), options);
+}
+
+/// The mesh of this process's lines, where many have those of whole components each.
+inline Mesh ZipPiece(
+  const Polylines& polylines, const midsurface_exchange& exchange, const Options& options = {})
+{
+  return detail::MakeTogether<Mesh>(midsurface_zip_piece, polylines.get(), exchange, options);
 }
 
 /// Fills the caller's arrays, of `length` floats each.
@@ -202,6 +228,17 @@ inline void RidgeField(const midsurface_volume& volume, float* distance, float* 
   midsurface_error* error = nullptr;
   const midsurface_status status =
     midsurface_ridge_field(&volume, run.Get(), distance, ridge, length, &error);
+  run.Finish(status, error);
+}
+
+/// The same for the piece that this process holds.
+inline void RidgeFieldPiece(const midsurface_piece& piece, const midsurface_exchange& exchange,
+  float* distance, float* ridge, std::size_t length, const Options& options = {})
+{
+  detail::Run run(options);
+  midsurface_error* error = nullptr;
+  const midsurface_status status =
+    midsurface_ridge_field_piece(&piece, &exchange, run.Get(), distance, ridge, length, &error);
   run.Finish(status, error);
 }
 

@@ -1,11 +1,12 @@
 //! What functions that hand over, read and free objects have in common.
 
-use midsurface::{abandon, Options, Volume};
+use midsurface::{abandon, Grid, Options, Volume};
 
 use crate::arguments::{free, object, Output};
 use crate::error::{guarded, guarded_value, midsurface_error, midsurface_status};
 use crate::exchange::{self, midsurface_exchange, Team};
 use crate::options::{self, midsurface_options, Callbacks};
+use crate::piece::{self, midsurface_piece};
 use crate::volume::{self, midsurface_volume};
 
 /// The body of a function that makes an object.
@@ -48,6 +49,42 @@ pub(crate) unsafe fn make_in_team<T>(
             Ok(())
         })
     }
+}
+
+/// The body of a function that makes an object of a volume that several processes hold in pieces.
+///
+/// # Safety
+/// The pointers are null or as the header describes.
+pub(crate) unsafe fn make_of_piece<T>(
+    piece: *const midsurface_piece,
+    exchange: *const midsurface_exchange,
+    options: *const midsurface_options,
+    out: *mut *mut T,
+    error: *mut *mut midsurface_error,
+    work: impl FnOnce(
+        (Option<&Volume>, &Grid),
+        &Options,
+        &mut Team,
+        &mut Callbacks,
+    ) -> Result<T, midsurface_error>,
+) -> midsurface_status {
+    // SAFETY: the same contract.
+    unsafe {
+        make_in_team(exchange, out, error, |team| {
+            let ((piece, whole), (options, mut callbacks)) =
+                told(team, || Ok((piece::read(piece)?, options::read(options)?)))?;
+            let volume = piece.as_ref().map(|(volume, _)| volume);
+            work((volume, &whole), &options, team, &mut callbacks)
+        })
+    }
+}
+
+/// What `read` makes of arguments; the other processes are told where it fails.
+pub(crate) fn told<T>(
+    team: &mut Team,
+    read: impl FnOnce() -> Result<T, midsurface_error>,
+) -> Result<T, midsurface_error> {
+    read().inspect_err(|error| abandon(team, &error.text()))
 }
 
 /// The body of a function that makes an object of a volume.

@@ -1,13 +1,13 @@
 //! The mesh, and the run that makes it from a volume.
 
-use midsurface::Mesh;
+use midsurface::{Mesh, MeshPiece};
 
 use crate::arguments::{address, collected, object};
 use crate::error::{guarded, midsurface_error, midsurface_status};
 use crate::exchange::midsurface_exchange;
-use crate::handles::{make_in_team, make_of_volume, release, show};
-use crate::options::{self, midsurface_options};
-use crate::piece::{self, midsurface_piece};
+use crate::handles::{make_of_piece, make_of_volume, release, show};
+use crate::options::midsurface_options;
+use crate::piece::midsurface_piece;
 use crate::volume::midsurface_volume;
 
 /// A triangle mesh: a 2-manifold with boundary, consistently wound in each component. Freed with
@@ -15,6 +15,8 @@ use crate::volume::midsurface_volume;
 #[derive(Debug)]
 pub struct midsurface_mesh {
     mesh: Mesh,
+    first_point: u64,
+    first_triangle: u64,
     /// Indices as C takes them.
     triangles: Vec<[i64; 3]>,
     components: Vec<i64>,
@@ -22,6 +24,14 @@ pub struct midsurface_mesh {
 
 impl midsurface_mesh {
     pub(crate) fn new(mesh: Mesh) -> Result<Self, midsurface_error> {
+        Self::new_piece(MeshPiece {
+            mesh,
+            ..MeshPiece::default()
+        })
+    }
+
+    pub(crate) fn new_piece(piece: MeshPiece) -> Result<Self, midsurface_error> {
+        let mesh = piece.mesh;
         // C reads as many values as the view says: arrays that are shorter must not get there.
         assert_eq!(mesh.normals.len(), mesh.points.len());
         assert_eq!(mesh.thickness.len(), mesh.points.len());
@@ -32,6 +42,8 @@ impl midsurface_mesh {
         Ok(Self {
             triangles: collected(mesh.triangles.len(), triangles)?,
             components: collected(mesh.components.len(), components)?,
+            first_point: piece.first_point,
+            first_triangle: piece.first_triangle,
             mesh,
         })
     }
@@ -47,6 +59,8 @@ impl midsurface_mesh {
             triangle_count: mesh.triangles.len(),
             labels: address(&mesh.labels),
             components: address(&self.components),
+            first_point: self.first_point,
+            first_triangle: self.first_triangle,
         }
     }
 }
@@ -73,6 +87,10 @@ pub struct midsurface_mesh_arrays {
     /// Component of each triangle: the label's 26-connected component, numbered from 0 by label,
     /// then by size, the largest first; triangle_count values.
     pub components: *const i64,
+    /// Number of the first point among those of all processes; 0 where there is one.
+    pub first_point: u64,
+    /// Number of the first triangle among those of all processes; 0 where there is one.
+    pub first_triangle: u64,
 }
 
 impl midsurface_mesh_arrays {
@@ -85,6 +103,8 @@ impl midsurface_mesh_arrays {
         triangle_count: 0,
         labels: std::ptr::null(),
         components: std::ptr::null(),
+        first_point: 0,
+        first_triangle: 0,
     };
 }
 
@@ -130,15 +150,17 @@ pub unsafe extern "C" fn midsurface_extract_piece(
 ) -> midsurface_status {
     // SAFETY: the pointers are as the header describes.
     unsafe {
-        make_in_team(exchange, out, error, |team| {
-            let arguments = piece::read(piece)
-                .and_then(|(piece, whole)| Ok((piece, whole, options::read(options)?)));
-            let (piece, whole, (options, mut callbacks)) =
-                arguments.inspect_err(|error| midsurface::abandon(team, &error.text()))?;
-            let piece = piece.as_ref();
-            let mesh = midsurface::extract_piece(piece, &whole, &options, team, &mut callbacks)?;
-            midsurface_mesh::new(mesh)
-        })
+        make_of_piece(
+            piece,
+            exchange,
+            options,
+            out,
+            error,
+            |(piece, whole), options, team, callbacks| {
+                let piece = midsurface::extract_piece(piece, whole, options, team, callbacks)?;
+                midsurface_mesh::new_piece(piece)
+            },
+        )
     }
 }
 

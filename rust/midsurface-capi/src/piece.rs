@@ -1,5 +1,7 @@
 //! A piece of a volume that is spread over processes, borrowed from the caller.
 
+use std::ops::Range;
+
 use midsurface::{Grid, Volume};
 
 use crate::arguments::value;
@@ -21,13 +23,16 @@ pub struct midsurface_piece {
     pub whole_extent_start: [i64; 3],
 }
 
+/// A piece of a volume, and the addresses of its scalars.
+type Piece<'a> = (Volume<'a>, Range<usize>);
+
 /// The piece, `None` where there is none, and where the voxels of the whole lie.
 ///
 /// # Safety
 /// `piece` is null or as the header describes, and its scalars outlive `'a`.
 pub(crate) unsafe fn read<'a>(
     piece: *const midsurface_piece,
-) -> Result<(Option<Volume<'a>>, Grid), midsurface_error> {
+) -> Result<(Option<Piece<'a>>, Grid), midsurface_error> {
     // SAFETY: the same contract.
     let piece = unsafe { value(piece, "piece") }?;
     let whole = Grid {
@@ -39,6 +44,6 @@ pub(crate) unsafe fn read<'a>(
         return Ok((None, whole));
     }
     // SAFETY: the same contract.
-    let (volume, _) = unsafe { volume::read(&piece.volume) }?;
-    Ok((Some(volume), whole))
+    let read = unsafe { volume::read(&piece.volume) }?;
+    Ok((Some(read), whole))
 }

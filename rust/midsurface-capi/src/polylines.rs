@@ -4,9 +4,11 @@ use midsurface::{Polyline, Polylines};
 
 use crate::arguments::{address, collected, object};
 use crate::error::{midsurface_error, midsurface_status};
-use crate::handles::{make, make_of_volume, release, show};
+use crate::exchange::midsurface_exchange;
+use crate::handles::{make, make_in_team, make_of_piece, make_of_volume, release, show, told};
 use crate::mesh::midsurface_mesh;
 use crate::options::{self, midsurface_options};
+use crate::piece::midsurface_piece;
 use crate::polyline_arrays::{self, midsurface_polyline_arrays};
 use crate::volume::midsurface_volume;
 
@@ -94,6 +96,39 @@ pub unsafe extern "C" fn midsurface_extract_polylines(
     }
 }
 
+/// Traces the mid-polylines of a label volume of which each of several processes holds a piece; each
+/// gets those of whole components, as for midsurface_extract_piece.
+///
+/// piece: what this process holds, as described there.
+/// exchange: how it reaches the others.
+/// options: as described there.
+/// out: where the new polylines go.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_extract_polylines_piece(
+    piece: *const midsurface_piece,
+    exchange: *const midsurface_exchange,
+    options: *const midsurface_options,
+    out: *mut *mut midsurface_polylines,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        make_of_piece(
+            piece,
+            exchange,
+            options,
+            out,
+            error,
+            |(piece, whole), options, team, callbacks| {
+                let lines =
+                    midsurface::mid_polylines_piece(piece, whole, options, team, callbacks)?;
+                midsurface_polylines::new(lines)
+            },
+        )
+    }
+}
+
 /// Makes polylines of arrays. The arrays are copied, a point as often as lines use it, and every
 /// offset and index is checked, and that coordinates and thickness are finite.
 ///
@@ -161,6 +196,35 @@ pub unsafe extern "C" fn midsurface_zip(
             let (options, mut callbacks) = options::read(options)?;
             let mesh = midsurface::zip_polylines(polylines, &options, &mut callbacks)?;
             midsurface_mesh::new(mesh)
+        })
+    }
+}
+
+/// Joins the polylines that several processes have, those of each component on one of them. Each gets
+/// the mesh of its lines. All processes have to call this at once; where one fails, all do.
+///
+/// polylines: the polylines of this process; they stay as they are.
+/// exchange: how it reaches the others.
+/// options: as described there.
+/// out: where the new mesh goes.
+/// error: where an error goes; may be NULL.
+#[no_mangle]
+pub unsafe extern "C" fn midsurface_zip_piece(
+    polylines: *const midsurface_polylines,
+    exchange: *const midsurface_exchange,
+    options: *const midsurface_options,
+    out: *mut *mut midsurface_mesh,
+    error: *mut *mut midsurface_error,
+) -> midsurface_status {
+    // SAFETY: the pointers are as the header describes.
+    unsafe {
+        make_in_team(exchange, out, error, |team| {
+            let (polylines, (options, mut callbacks)) = told(team, || {
+                Ok((object(polylines, "polylines")?, options::read(options)?))
+            })?;
+            let lines = &polylines.polylines;
+            let piece = midsurface::zip_polylines_piece(lines, &options, team, &mut callbacks)?;
+            midsurface_mesh::new_piece(piece)
         })
     }
 }

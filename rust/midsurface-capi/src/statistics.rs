@@ -5,7 +5,7 @@ use midsurface::{Scope, Statistics, TriangleMesh};
 use crate::arguments::{address, collected, optional_slice, slice, value};
 use crate::error::{midsurface_error, midsurface_status};
 use crate::exchange::midsurface_exchange;
-use crate::handles::{look, make, make_in_team, release};
+use crate::handles::{look, make, make_in_team, release, told};
 
 /// A triangle mesh of any origin. Borrowed for a call, never copied.
 #[repr(C)]
@@ -157,7 +157,7 @@ pub unsafe extern "C" fn midsurface_measure_pieces(
     // SAFETY: the pointers are as the header describes.
     unsafe {
         make_in_team(exchange, out, error, |team| {
-            let mesh = read(mesh).inspect_err(|error| midsurface::abandon(team, &error.text()))?;
+            let mesh = told(team, || read(mesh))?;
             table(midsurface::statistics_of_pieces(&mesh, team)?)
         })
     }

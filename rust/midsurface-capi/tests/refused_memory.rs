@@ -9,9 +9,10 @@ use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use midsurface::{
-    extract, extract_piece, statistics, Error, Exchange, Grid, Method, Options, Quiet,
-    TriangleMesh, Vec3, Volume,
+    extract, extract_piece, mid_polylines_piece, ridge_field_piece, statistics,
+    zip_polylines_piece, Error, Exchange, Grid, Method, Options, Quiet, TriangleMesh, Vec3, Volume,
 };
+use ndarray::Array3;
 
 /// Buffers of fewer bytes are granted. Workers have buffers of their own, which are as large as a block
 /// of the surface or a slice of the volume at most, whatever the size of the data.
@@ -123,12 +124,23 @@ fn a_refused_buffer_is_an_error() {
         ..ridge_surface.clone()
     };
     let quiet = &mut Quiet::default();
+    let mut fields = [(); 2].map(|()| Array3::<f32>::zeros([SIZE; 3]));
     refuse_each("ridge surface", 200, || {
         extract(&volume, &ridge_surface, quiet)
     });
     refuse_each("polyline zipper", 80, || extract(&volume, &zipper, quiet));
     refuse_each("polyline zipper on a piece", 80, || {
         extract_piece(Some(&volume), &grid, &zipper, &mut Alone, quiet)
+    });
+    refuse_each("polylines on a piece, zipped", 60, || {
+        let alone = &mut Alone;
+        let lines = mid_polylines_piece(Some(&volume), &grid, &zipper, alone, quiet)?;
+        zip_polylines_piece(&lines, &zipper, alone, quiet)
+    });
+    refuse_each("fields on a piece", 20, || {
+        let [distance, ridge] = fields.each_mut().map(Array3::view_mut);
+        let (piece, alone) = (Some(&volume), &mut Alone);
+        ridge_field_piece(piece, &grid, &zipper, alone, quiet, distance, ridge)
     });
     let mesh = extract(&volume, &ridge_surface, quiet).expect("a mesh");
     refuse_each("quality", 2, || mesh.quality());

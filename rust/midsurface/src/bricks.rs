@@ -22,6 +22,8 @@ pub(crate) const BRICK: usize = EDGE * LAYER;
 /// also as far as filters need: a filter's radius is the sheet's half thickness and a voxel, so that
 /// midway through the sheet nothing beyond is seen.
 const MARGIN: usize = 3;
+/// Voxels from a part that its bricks may reach.
+pub(crate) const REACH: usize = MARGIN + EDGE - 1;
 
 /// Entry of a directory where the part has no brick; present ones hold their index plus one.
 const ABSENT: u32 = 0;

@@ -100,6 +100,9 @@ pub enum Error {
     /// The pieces of the processes are not those of one volume.
     #[error("the segmentation is spread over several processes, whose parts do not make up one image: save it to a file and open that")]
     Pieces,
+    /// The processes of a run are not told to do the same.
+    #[error("the processes were given different options: all need the same labels, method and edge length")]
+    OptionsDiffer,
     /// A process cannot be reached.
     #[error("the connection between the processes is broken")]
     Connection,

@@ -51,12 +51,16 @@ impl<'a> Collected<'a> {
         }
     }
 
-    /// Hands the warnings of all processes to the first one.
+    /// Hands the warnings of all processes to the first one, each once.
     pub fn gather(&mut self, team: &mut Team) -> Result<()> {
         let own = std::mem::take(&mut self.warnings).join("\n");
         for of_process in team.gather(numbers(&own))? {
-            let lines = text(&of_process);
-            self.warnings.extend(lines.lines().map(str::to_owned));
+            for line in text(&of_process).lines() {
+                // Those that work on the same component may say the same.
+                if !self.warnings.iter().any(|known| known == line) {
+                    self.warnings.push(line.to_owned());
+                }
+            }
         }
         Ok(())
     }

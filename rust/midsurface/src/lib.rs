@@ -54,6 +54,7 @@ mod contour;
 mod crest;
 mod crossings;
 mod distance;
+mod distributed;
 mod eigen;
 mod ends;
 mod error;
@@ -112,10 +113,12 @@ use ndarray::ArrayViewMut3;
 
 use batches::{for_each_batch, for_each_ridge_field};
 use components::Part;
+pub use distributed::{
+    extract_piece, mid_polylines_piece, ridge_field_piece, zip_polylines_piece, MeshPiece,
+};
 pub use error::{Error, Result};
-use exchange::Team;
 pub use exchange::{abandon, Exchange};
-use execution::{Collected, Execution};
+use execution::Execution;
 pub use execution::{Observer, Quiet};
 use findings::Findings;
 pub use grid::{Grid, Vec3};
@@ -185,55 +188,6 @@ pub fn extract(volume: &Volume, options: &Options, observer: &mut dyn Observer) 
     Ok(mesh)
 }
 
-/// The mid-surface of a volume of which each of several processes holds a piece. Each gets the mesh
-/// of whole components, as [`extract`] numbers them; all of them together are what [`extract`]
-/// makes of the whole volume. All processes have to call this at once, with the same options and
-/// the same `whole`, which tells where the voxels of the whole volume lie; pieces may overlap, and
-/// may be `None`. Warnings about the whole go to the observer of the first process.
-///
-/// # Errors
-/// As [`extract`], in all processes where one fails, and where the pieces do not make up the whole.
-pub fn extract_piece(
-    piece: Option<&Volume>,
-    whole: &Grid,
-    options: &Options,
-    exchange: &mut dyn Exchange,
-    observer: &mut dyn Observer,
-) -> Result<Mesh> {
-    let mut warnings = Collected::new(observer);
-    let mut team = Team::new(exchange);
-    let is_first = team.is_first();
-    let result = extract_in_team(piece, whole, options, &mut team, &mut warnings);
-    let result = team.close(result);
-    if is_first {
-        warnings.pass_on();
-    }
-    result
-}
-
-fn extract_in_team(
-    piece: Option<&Volume>,
-    whole: &Grid,
-    options: &Options,
-    team: &mut Team,
-    warnings: &mut Collected,
-) -> Result<Mesh> {
-    options.check()?;
-    let mut execution = Execution::new(options.threads, warnings)?;
-    execution.within(0.0, options.tracing());
-    let parts = pieces::gather_parts(piece, whole, options, team, &mut execution)?;
-    let (mesh, findings) = find_surface(&parts, whole, options, &mut execution)?;
-    let of_all = team.gather(findings.pack())?;
-    let mut findings = Findings::default();
-    for of_process in &of_all {
-        findings.add(&Findings::unpack(of_process));
-    }
-    findings.warn(&mut execution);
-    execution.finish()?;
-    warnings.gather(team)?;
-    Ok(mesh)
-}
-
 /// The distinct labels of a volume, ascending; 0 is background.
 ///
 /// # Errors
@@ -263,26 +217,13 @@ pub fn ridge_field(
     mut ridge: ArrayViewMut3<f32>,
 ) -> Result<()> {
     let mut execution = Execution::new(options.threads, observer)?;
-    let unit = volume.grid.unit() as f32;
     let parts = read_parts(volume, options, &mut execution, 1.0)?;
-    for_each_ridge_field(
-        &parts,
-        &volume.grid,
-        &mut execution,
-        (1.0, "Writing the fields"),
-        |batch, field, _| Ok((batch, field)),
-        |(batch, field)| {
-            for (brick, place) in batch.places() {
-                for (entry, [x, y, z]) in bricks::voxels(brick, place, volume.grid.dimensions) {
-                    // Margins of neighbouring parts overlap: the stronger field wins.
-                    let (d, r) = (&mut distance[[z, y, x]], &mut ridge[[z, y, x]]);
-                    *d = d.max(field.distance[entry] * unit);
-                    *r = r.max(field.ridge[entry] * unit);
-                }
-            }
-            Ok(())
-        },
-    )
+    let mut fields = Fields {
+        distance: distance.view_mut(),
+        ridge: ridge.view_mut(),
+        first: [0; 3],
+    };
+    write_fields(&parts, &volume.grid, &mut fields, &mut execution)
 }
 
 /// The mid-polylines of every slice.
@@ -340,6 +281,48 @@ fn find_surface(
         Method::RidgeSurface => find_ridge_surface(parts, grid, options, &mut findings, execution)?,
     };
     Ok((mesh, findings))
+}
+
+/// Where fields go: arrays of shape (z, y, x) whose first voxel is the volume's voxel `first`, x, y, z.
+struct Fields<'a> {
+    distance: ArrayViewMut3<'a, f32>,
+    ridge: ArrayViewMut3<'a, f32>,
+    first: [usize; 3],
+}
+
+/// Writes the fields of whole components where the arrays have room for them.
+fn write_fields(
+    parts: &[Part],
+    grid: &Grid,
+    fields: &mut Fields,
+    execution: &mut Execution,
+) -> Result<()> {
+    let unit = grid.unit() as f32;
+    for_each_ridge_field(
+        parts,
+        grid,
+        execution,
+        (1.0, "Writing the fields"),
+        |batch, field, _| Ok((batch, field)),
+        |(batch, field)| {
+            for (brick, place) in batch.places() {
+                for (entry, voxel) in bricks::voxels(brick, place, grid.dimensions) {
+                    // What lies before the first wraps round to beyond the last.
+                    let [x, y, z] = std::array::from_fn(|a| voxel[a].wrapping_sub(fields.first[a]));
+                    let places = (
+                        fields.distance.get_mut([z, y, x]),
+                        fields.ridge.get_mut([z, y, x]),
+                    );
+                    if let (Some(d), Some(r)) = places {
+                        // Margins of neighbouring parts overlap: the stronger field wins.
+                        *d = d.max(field.distance[entry] * unit);
+                        *r = r.max(field.ridge[entry] * unit);
+                    }
+                }
+            }
+            Ok(())
+        },
+    )
 }
 
 /// The polylines, and the number of disks in place of which there are none.

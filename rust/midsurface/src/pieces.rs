@@ -3,17 +3,19 @@
 //! Every process scans its piece, and from then on only runs travel: a few per cent of the voxels.
 //! It finds the components within its piece; the first process is told their sizes and the runs
 //! beside other pieces, joins what touches, numbers the components of the whole volume, and deals
-//! them out, the largest first, each to the process that has least to do. So no process ever holds
-//! the volume or the whole mesh, as long as no single component is most of it. What follows sees
-//! whole components and cannot tell that there were pieces.
+//! them out: each to one process, the largest first to the one that has least to do, where a surface
+//! is made, and where a field is written to all in whose pieces it is. So no process ever holds the
+//! volume or the whole mesh, as long as no single component is most of it. What follows sees whole
+//! components and cannot tell that there were pieces.
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
+use crate::bricks;
 use crate::components::{
     connected, for_each_touch, parts, sort_by_label, DisjointSets, Part, SPECK,
 };
-use crate::error::{check_count, collected, filled, push, reserved, Error, Result};
+use crate::error::{check_count, collected, extend, filled, push, reserved, Error, Result};
 use crate::exchange::Team;
 use crate::execution::Execution;
 use crate::grid::Grid;
@@ -29,11 +31,28 @@ const RUN_LENGTH: usize = 4;
 /// Stands for the number of a component that is left out.
 const LEFT_OUT: i64 = -1;
 
+/// Who works on a component.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Share {
+    /// One process.
+    One,
+    /// Every process near whose piece it is, as far as fields reach.
+    Near,
+}
+
+/// The number of a component in the whole volume, or [`LEFT_OUT`], and who works on it.
+#[derive(Debug, Clone, PartialEq)]
+struct Decision {
+    number: i64,
+    workers: Vec<i64>,
+}
+
 /// The parts of the components that this process is to work on, numbered as in the whole volume.
 pub(crate) fn gather_parts(
     piece: Option<&Volume>,
     whole: &Grid,
     options: &Options,
+    share: Share,
     team: &mut Team,
     execution: &mut Execution,
 ) -> Result<Vec<Part>> {
@@ -53,7 +72,11 @@ pub(crate) fn gather_parts(
     sort_by_label(&mut runs);
     let found = LocalComponents::find(&runs)?;
     execution.pass_done()?;
-    let decided = found.agree(&runs, &territory, voxels, team, execution)?;
+    let near = match share {
+        Share::One => Vec::new(),
+        Share::Near => found.near(&runs, &territory)?,
+    };
+    let decided = found.agree(&runs, &near, &territory, voxels, team, execution)?;
     let (runs, numbers) = deal_out(&runs, &found, &decided, team)?;
     let (mut parts, _) = parts(runs, execution)?;
     // Both count by label, then by size, then by place.
@@ -138,21 +161,37 @@ impl LocalComponents {
         Ok(found)
     }
 
-    /// What the first process makes of each component: its number in the whole volume or
-    /// [`LEFT_OUT`], and the process that works on it.
+    /// Pairs of a component and a process whose piece it reaches into, or nearly so.
+    fn near(&self, runs: &[Run], territory: &Territory) -> Result<Vec<[i64; 2]>> {
+        let mut near = Vec::new();
+        for (run, &component) in runs.iter().zip(&self.of_run) {
+            for process in territory.near(run, bricks::REACH) {
+                push(&mut near, [component.into(), process as i64])?;
+            }
+        }
+        near.sort_unstable();
+        near.dedup();
+        Ok(near)
+    }
+
+    /// What the first process decides for each component. `near` names processes that have to work
+    /// on one; where there is none, one process is chosen.
     fn agree(
         &self,
         runs: &[Run],
+        near: &[[i64; 2]],
         territory: &Territory,
         voxels: usize,
         team: &mut Team,
         execution: &mut Execution,
-    ) -> Result<Vec<[i64; 2]>> {
-        let mut message = reserved(1 + COMPONENT_LENGTH * self.components.len())?;
-        message.push(self.components.len() as i64);
+    ) -> Result<Vec<Decision>> {
+        let length = 2 + COMPONENT_LENGTH * self.components.len() + 2 * near.len();
+        let mut message = reserved(length)?;
+        message.extend([self.components.len() as i64, near.len() as i64]);
         for c in &self.components {
             message.extend([c.label, c.voxels, c.first[0], c.first[1], c.first[2]]);
         }
+        message.extend(near.as_flattened());
         let beside = runs.iter().zip(&self.of_run);
         for (run, &component) in beside.filter(|(run, _)| territory.is_at_border(run)) {
             for number in pack(run, i64::from(component)) {
@@ -166,8 +205,7 @@ impl LocalComponents {
             Vec::new()
         };
         let mut answers = team.swap(answers)?;
-        let answer = answers.swap_remove(crate::exchange::FIRST);
-        collected(answer.chunks_exact(2).map(|pair| [pair[0], pair[1]]))
+        read_decisions(&answers.swap_remove(crate::exchange::FIRST))
     }
 }
 
@@ -194,6 +232,65 @@ fn unpack(numbers: &[i64]) -> (Run, i64) {
     (run, numbers[0])
 }
 
+/// What [`decide`] answers one process, component by component.
+fn read_decisions(mut answer: &[i64]) -> Result<Vec<Decision>> {
+    let mut decisions = Vec::new();
+    while let Some((&[number, count], rest)) = answer.split_first_chunk::<2>() {
+        let (workers, rest) = rest.split_at_checked(count as usize).ok_or(Error::Pieces)?;
+        let workers = collected(workers.iter().copied())?;
+        push(&mut decisions, Decision { number, workers })?;
+        answer = rest;
+    }
+    Ok(decisions)
+}
+
+/// What all processes have told the first one.
+#[derive(Default)]
+struct Gathered {
+    components: Vec<Component>,
+    /// Runs beside other pieces, with their components.
+    beside: Vec<(Run, u32)>,
+    /// Components and processes near them.
+    near: Vec<(usize, i64)>,
+    /// Where the components of each process begin, and the end.
+    starts: Vec<usize>,
+}
+
+impl Gathered {
+    fn read(of_all: &[Vec<i64>]) -> Result<Self> {
+        let mut all = Self {
+            starts: vec![0],
+            ..Self::default()
+        };
+        for message in of_all {
+            let (&[count, near], rest) = message.split_first_chunk().ok_or(Error::Pieces)?;
+            let described = COMPONENT_LENGTH * count as usize;
+            let (described, rest) = rest.split_at_checked(described).ok_or(Error::Pieces)?;
+            let near = 2 * near as usize;
+            let (near, runs) = rest.split_at_checked(near).ok_or(Error::Pieces)?;
+            let first = all.components.len();
+            for c in described.chunks_exact(COMPONENT_LENGTH) {
+                let component = Component {
+                    label: c[0],
+                    voxels: c[1],
+                    first: [c[2], c[3], c[4]],
+                };
+                push(&mut all.components, component)?;
+            }
+            for pair in near.chunks_exact(2) {
+                push(&mut all.near, (first + pair[0] as usize, pair[1]))?;
+            }
+            for numbers in runs.chunks_exact(RUN_LENGTH) {
+                let (run, component) = unpack(numbers);
+                push(&mut all.beside, (run, first as u32 + component as u32))?;
+            }
+            all.starts.push(all.components.len());
+        }
+        check_count("components", all.components.len(), 1)?;
+        Ok(all)
+    }
+}
+
 /// Joins the components of all pieces, and answers each process as [`LocalComponents::agree`] says.
 fn decide(
     of_all: &[Vec<i64>],
@@ -201,34 +298,29 @@ fn decide(
     processes: usize,
     execution: &mut Execution,
 ) -> Result<Vec<Vec<i64>>> {
-    let mut components: Vec<Component> = Vec::new();
-    let mut beside: Vec<(Run, u32)> = Vec::new();
-    let mut starts = vec![0];
-    for message in of_all {
-        let (count, rest) = message.split_first().ok_or(Error::Pieces)?;
-        let described = COMPONENT_LENGTH * *count as usize;
-        let (described, runs) = rest.split_at_checked(described).ok_or(Error::Pieces)?;
-        let first = components.len() as i64;
-        for c in described.chunks_exact(COMPONENT_LENGTH) {
-            let component = Component {
-                label: c[0],
-                voxels: c[1],
-                first: [c[2], c[3], c[4]],
-            };
-            push(&mut components, component)?;
-        }
-        for numbers in runs.chunks_exact(RUN_LENGTH) {
-            let (run, component) = unpack(numbers);
-            push(&mut beside, (run, (first + component) as u32))?;
-        }
-        starts.push(components.len());
+    let mut all = Gathered::read(of_all)?;
+    let mut sets = join_across(&mut all.beside, all.components.len())?;
+    let whole = join_components(&all.components, &mut sets)?;
+    let mut decisions = number_and_deal(&whole, voxels, processes, execution)?;
+    let mut near = collected(all.near.iter().map(|&(c, process)| (sets.find(c), process)))?;
+    near.sort_unstable();
+    near.dedup();
+    for of_component in near.chunk_by(|a, b| a.0 == b.0) {
+        let workers = of_component.iter().map(|&(_, process)| process);
+        decisions[of_component[0].0].workers = collected(workers)?;
     }
-    check_count("components", components.len(), 1)?;
-    let mut sets = join_across(&mut beside, components.len())?;
-    let decided = number_and_deal(&components, &mut sets, voxels, processes, execution)?;
-    let of_process =
-        |pair: &[usize]| collected(decided[pair[0]..pair[1]].as_flattened().iter().copied());
-    starts.windows(2).map(of_process).collect()
+    let mut answers = Vec::new();
+    for pair in all.starts.windows(2) {
+        let mut answer = Vec::new();
+        for component in pair[0]..pair[1] {
+            let decision = &decisions[sets.find(component)];
+            push(&mut answer, decision.number)?;
+            push(&mut answer, decision.workers.len() as i64)?;
+            extend(&mut answer, decision.workers.iter().copied())?;
+        }
+        answers.push(answer);
+    }
+    Ok(answers)
 }
 
 /// Joins the components whose runs beside other pieces touch.
@@ -258,21 +350,28 @@ fn follows(before: &Run, run: &Run) -> bool {
     (before.z, before.y, before.end) == (run.z, run.y, run.start)
 }
 
-/// Numbers the joined components by label, then by size, the largest first, then by place, and
-/// gives the largest first to the process with the fewest voxels so far.
-fn number_and_deal(
+/// The components that `sets` make of those of all pieces, where their roots are.
+fn join_components(
     components: &[Component],
     sets: &mut DisjointSets,
-    voxels: usize,
-    processes: usize,
-    execution: &mut Execution,
-) -> Result<Vec<[i64; 2]>> {
+) -> Result<Vec<Option<Component>>> {
     let mut whole: Vec<Option<Component>> = filled(None, components.len())?;
     for (i, c) in components.iter().enumerate() {
         let joined = whole[sets.find(i)].get_or_insert(Component { voxels: 0, ..*c });
         joined.voxels += c.voxels;
         joined.first = joined.first.min(c.first);
     }
+    Ok(whole)
+}
+
+/// Numbers the joined components by label, then by size, the largest first, then by place, and
+/// gives the largest first to the process with the fewest voxels so far.
+fn number_and_deal(
+    whole: &[Option<Component>],
+    voxels: usize,
+    processes: usize,
+    execution: &mut Execution,
+) -> Result<Vec<Decision>> {
     let mut order: Vec<(usize, Component)> = Vec::new();
     let mut specks = 0;
     for (i, component) in whole.iter().enumerate() {
@@ -283,12 +382,16 @@ fn number_and_deal(
         }
     }
     order.sort_unstable_by_key(|(i, c)| (c.label, Reverse(c.voxels), c.first, *i));
-    let mut decided = filled([LEFT_OUT, 0], components.len())?;
+    let left_out = Decision {
+        number: LEFT_OUT,
+        workers: Vec::new(),
+    };
+    let mut decisions = filled(left_out, whole.len())?;
     for (number, (root, c)) in order.iter().enumerate() {
         if c.voxels as usize == voxels {
             report_full(execution);
         } else {
-            decided[*root][0] = number as i64;
+            decisions[*root].number = number as i64;
         }
     }
     report_specks(specks, execution);
@@ -297,26 +400,27 @@ fn number_and_deal(
     for (root, c) in &order {
         let owner = (0..processes).min_by_key(|&p| load[p]).unwrap_or(0);
         load[owner] += c.voxels;
-        decided[*root][1] = owner as i64;
+        decisions[*root].workers = vec![owner as i64];
     }
-    collected((0..components.len()).map(|i| decided[sets.find(i)]))
+    Ok(decisions)
 }
 
-/// Sends every run to the process that works on its component. Returns the runs of the own
-/// components, in order, and the numbers of these, ascending.
+/// Sends every run to those who work on its component. Returns the runs of the own components, in
+/// order, and the numbers of these, ascending.
 fn deal_out(
     runs: &[Run],
     found: &LocalComponents,
-    decided: &[[i64; 2]],
+    decided: &[Decision],
     team: &mut Team,
 ) -> Result<(Vec<Run>, Vec<u32>)> {
     let mut messages = vec![Vec::new(); team.processes()];
     for (run, &component) in runs.iter().zip(&found.of_run) {
-        let [number, owner] = decided[component as usize];
-        if number != LEFT_OUT {
-            for word in pack(run, number) {
-                push(&mut messages[owner as usize], word)?;
-            }
+        let Decision { number, workers } = &decided[component as usize];
+        if *number == LEFT_OUT {
+            continue;
+        }
+        for &worker in workers {
+            extend(&mut messages[worker as usize], pack(run, *number))?;
         }
     }
     let received = team.swap(messages)?;

@@ -42,11 +42,12 @@ impl Extent {
             && (self.from[2]..self.to[2]).contains(&run.z.into())
     }
 
-    /// Whether a run lies in it or beside it, at corners too.
-    fn is_near(&self, run: &Run) -> bool {
+    /// Whether a run lies in it or so many voxels off, at corners too.
+    fn is_near(&self, run: &Run, voxels: i64) -> bool {
         let from = [run.start, run.y, run.z].map(i64::from);
         let to = [run.end, run.y + 1, run.z + 1].map(i64::from);
-        !self.is_empty() && (0..3).all(|a| from[a] <= self.to[a] && self.from[a] <= to[a])
+        let is_along = |a: usize| from[a] < self.to[a] + voxels && self.from[a] < to[a] + voxels;
+        !self.is_empty() && (0..3).all(is_along)
     }
 }
 
@@ -143,7 +144,14 @@ impl Territory {
     /// Whether a run may touch one of another process.
     pub fn is_at_border(&self, run: &Run) -> bool {
         let mut others = self.extents.iter().enumerate();
-        others.any(|(process, extent)| process != self.own && extent.is_near(run))
+        others.any(|(process, extent)| process != self.own && extent.is_near(run, 1))
+    }
+
+    /// The processes in whose pieces a run lies, or up to so many voxels off.
+    pub fn near<'a>(&'a self, run: &'a Run, voxels: usize) -> impl Iterator<Item = usize> + 'a {
+        let all = self.extents.iter().enumerate();
+        let near = all.filter(move |(_, extent)| extent.is_near(run, voxels as i64));
+        near.map(|(process, _)| process)
     }
 
     /// The same error, with its voxel counted in the whole.

@@ -1,11 +1,13 @@
-//! A volume that is spread over processes gives the mesh that it gives as a whole.
+//! A volume that is spread over processes gives what it gives as a whole.
 
 use std::sync::mpsc::{channel, Receiver, Sender};
 
 use midsurface::{
-    extract, extract_piece, statistics, statistics_of_pieces, Error, Exchange, Grid, Mesh, Method,
-    Observer, Options, Result, Statistics, TriangleMesh, Volume,
+    extract, extract_piece, mid_polylines, mid_polylines_piece, ridge_field, ridge_field_piece,
+    statistics, statistics_of_pieces, zip_polylines_piece, Error, Exchange, Grid, Mesh, MeshPiece,
+    Method, Observer, Options, Polylines, Result, Statistics, TriangleMesh, Volume,
 };
+use ndarray::{s, Array3};
 use phantoms::*;
 use proptest::prelude::*;
 
@@ -76,14 +78,21 @@ fn cut(labels: &[u8], whole: &Grid, [from, to]: Extent) -> Option<(Vec<u8>, Grid
     Some((piece.collect(), grid))
 }
 
-/// What each process makes of its piece, and what it tells.
-fn run(
+/// What the function of a process is called with.
+struct Call<'a> {
+    piece: Option<&'a Volume<'a>>,
+    end: &'a mut Channels,
+    observer: &'a mut Recorder,
+}
+
+/// What `work` makes of the piece in each process, and what it tells.
+fn in_processes<T: Send>(
     labels: &[u8],
     whole: &Grid,
     pieces: &[Extent],
-    options: &Options,
     cancel: impl Fn(usize) -> usize + Sync,
-) -> Vec<(Result<Mesh>, Vec<String>)> {
+    work: impl Fn(Call) -> Result<T> + Sync,
+) -> Vec<(Result<T>, Vec<String>)> {
     let ends = connect(pieces.len());
     let work = |mut end: Channels, extent: Extent| {
         let mut recorder = Recorder::new(cancel(end.process));
@@ -91,8 +100,12 @@ fn run(
         let volume = piece
             .as_ref()
             .map(|(labels, grid)| Volume::new(labels, grid.clone()).expect("a piece"));
-        let mesh = extract_piece(volume.as_ref(), whole, options, &mut end, &mut recorder);
-        (mesh, recorder.warnings)
+        let result = work(Call {
+            piece: volume.as_ref(),
+            end: &mut end,
+            observer: &mut recorder,
+        });
+        (result, recorder.warnings)
     };
     let work = &work;
     std::thread::scope(|scope| {
@@ -100,6 +113,19 @@ fn run(
         let threads: Vec<_> = ends.into_iter().zip(pieces).map(start).collect();
         let outcomes = threads.into_iter().map(|thread| thread.join());
         outcomes.map(|outcome| outcome.expect("no panic")).collect()
+    })
+}
+
+/// The mesh of each process.
+fn run(
+    labels: &[u8],
+    whole: &Grid,
+    pieces: &[Extent],
+    options: &Options,
+    cancel: impl Fn(usize) -> usize + Sync,
+) -> Vec<(Result<MeshPiece>, Vec<String>)> {
+    in_processes(labels, whole, pieces, cancel, |call| {
+        extract_piece(call.piece, whole, options, call.end, call.observer)
     })
 }
 
@@ -159,7 +185,12 @@ fn compare(labels: &[u8], whole: &Grid, pieces: &[Extent], options: &Options) ->
     let mut meshes = Vec::new();
     for (process, (outcome, warnings)) in outcomes.into_iter().enumerate() {
         match outcome {
-            Ok(mesh) => meshes.push(mesh),
+            Ok(piece) => {
+                let before = |count: fn(&Mesh) -> usize| meshes.iter().map(count).sum::<usize>();
+                assert_eq!(piece.first_point as usize, before(|m| m.points.len()));
+                assert_eq!(piece.first_triangle as usize, before(|m| m.triangles.len()));
+                meshes.push(piece.mesh);
+            }
             Err(error) => assert!(expected.is_err(), "process {process}: {error}"),
         }
         if process == 0 {
@@ -208,6 +239,143 @@ fn any_number_of_pieces_gives_the_mesh_of_the_whole() {
             let meshes = compare(&labels, &whole, &pieces, &options(method));
             let busy = meshes.iter().filter(|mesh| !mesh.triangles.is_empty());
             assert!(busy.count() >= pieces.len().min(2), "one does all the work");
+        }
+    }
+}
+
+/// A line's label, component and slice, whether it is closed, and the bits of its points.
+type Line = (i64, u32, i64, bool, Vec<u64>);
+
+/// The lines of all, whatever their order.
+fn lines<'a>(all: impl IntoIterator<Item = &'a Polylines>) -> Vec<Line> {
+    let mut found = Vec::new();
+    for polylines in all {
+        for line in &polylines.lines {
+            let bits = (line.first..line.first + line.count).flat_map(|p| {
+                let [thick, border] =
+                    [&polylines.thickness, &polylines.border_distance].map(|a| f64::from(a[p]));
+                let point = polylines.points[p].into_iter();
+                point.chain([thick, border]).map(f64::to_bits)
+            });
+            let bits = bits.collect();
+            found.push((line.label, line.component, line.slice, line.closed, bits));
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn lines_of_pieces_are_those_of_the_whole_and_are_zipped_to_its_mesh() {
+    let dimensions = [96, 72, 40];
+    let labels = mitochondrion(dimensions, 0.05, 11);
+    let whole = &Grid::new(dimensions);
+    let options = &options(Method::PolylineZipper);
+    let volume = Volume::new(&labels, whole.clone()).expect("a volume");
+    let mut recorder = Recorder::new(usize::MAX);
+    let expected = mid_polylines(&volume, options, &mut recorder).expect("lines");
+    let mesh = extract(&volume, options, &mut Recorder::new(usize::MAX)).expect("a mesh");
+    for counts in [[2, 1, 1], [1, 1, 3], [2, 2, 1]] {
+        let pieces = blocks(dimensions, counts, 1);
+        let outcomes = in_processes(&labels, whole, &pieces, never, |call| {
+            let (end, observer) = (call.end, call.observer);
+            let lines = mid_polylines_piece(call.piece, whole, options, end, observer)?;
+            let mesh = zip_polylines_piece(&lines, options, end, &mut Recorder::new(usize::MAX))?;
+            Ok((lines, mesh.mesh))
+        });
+        assert_eq!(outcomes[0].1, recorder.warnings);
+        let outcomes = outcomes.into_iter().map(|(result, _)| result);
+        let (found, meshes): (Vec<_>, Vec<_>) = outcomes.map(|r| r.expect("lines")).unzip();
+        assert_eq!(lines(&found), lines([&expected]));
+        assert_eq!(triangles(&meshes), triangles([&mesh]));
+    }
+}
+
+#[test]
+fn lines_of_a_component_on_several_processes_are_refused_by_all() {
+    let dimensions = [40, 36, 32];
+    let labels = mitochondrion(dimensions, 0.0, 1);
+    let whole = &Grid::new(dimensions);
+    let options = &options(Method::PolylineZipper);
+    let volume = Volume::new(&labels, whole.clone()).expect("a volume");
+    let mut recorder = Recorder::new(usize::MAX);
+    let same = &mid_polylines(&volume, options, &mut recorder).expect("lines");
+    let nothing = [[[0; 3]; 2]; 2];
+    for (outcome, _) in in_processes(&labels, whole, &nothing, never, |call| {
+        zip_polylines_piece(same, options, call.end, call.observer)
+    }) {
+        let error = outcome.expect_err("refused").to_string();
+        assert!(
+            error.contains("several processes have lines of component 0"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn fields_of_pieces_are_those_of_the_whole() {
+    let dimensions = [96, 72, 40];
+    let labels = mitochondrion(dimensions, 0.05, 11);
+    let whole = &Grid {
+        extent_start: [-5, 0, 7],
+        spacing: [1.0, 1.0, 1.3],
+        ..Grid::new(dimensions)
+    };
+    let options = &options(Method::PolylineZipper);
+    let volume = Volume::new(&labels, whole.clone()).expect("a volume");
+    let mut observer = Recorder::new(usize::MAX);
+    let of = |[x, y, z]: [usize; 3]| [Array3::<f32>::zeros((z, y, x)), Array3::zeros((z, y, x))];
+    let [mut distance, mut ridge] = of(dimensions);
+    let (d, r) = (distance.view_mut(), ridge.view_mut());
+    ridge_field(&volume, options, &mut observer, d, r).expect("fields");
+    for (counts, shared) in [
+        ([2, 1, 1], 1),
+        ([1, 1, 3], 0),
+        ([2, 2, 1], 2),
+        ([7, 1, 1], 1),
+    ] {
+        let pieces = blocks(dimensions, counts, shared);
+        let outcomes = in_processes(&labels, whole, &pieces, never, |call| {
+            let [mut distance, mut ridge] =
+                of(call.piece.map_or([0; 3], |piece| piece.grid().dimensions));
+            let (d, r) = (distance.view_mut(), ridge.view_mut());
+            ridge_field_piece(call.piece, whole, options, call.end, call.observer, d, r)?;
+            Ok([distance, ridge])
+        });
+        for ((outcome, _), [from, to]) in outcomes.into_iter().zip(pieces) {
+            let part = s![from[2]..to[2], from[1]..to[1], from[0]..to[0]];
+            let found = outcome.expect("fields");
+            assert_eq!(found, [distance.slice(part), ridge.slice(part)]);
+        }
+    }
+}
+
+#[test]
+fn processes_that_are_told_different_things_are_refused() {
+    let dimensions = [40, 36, 32];
+    let labels = mitochondrion(dimensions, 0.0, 1);
+    let whole = &Grid::new(dimensions);
+    let pieces = blocks(dimensions, [3, 1, 1], 1);
+    let of_one = [
+        options(Method::PolylineZipper),
+        Options {
+            edge_length: 3.0,
+            ..options(Method::RidgeSurface)
+        },
+        Options {
+            labels: Some(vec![1]),
+            ..options(Method::RidgeSurface)
+        },
+    ];
+    for different in &of_one {
+        for (outcome, _) in in_processes(&labels, whole, &pieces, never, |call| {
+            let own = match call.end.process {
+                1 => different.clone(),
+                _ => options(Method::RidgeSurface),
+            };
+            extract_piece(call.piece, whole, &own, call.end, call.observer)
+        }) {
+            assert_eq!(outcome, Err(Error::OptionsDiffer));
         }
     }
 }
