@@ -175,33 +175,29 @@ fn receive<R>(
 }
 
 /// How much of each batch is done, and of all.
-struct Progress<'a> {
-    queue: &'a Queue<'a>,
-    of_batches: Vec<f64>,
+struct Progress {
+    /// What is done of each batch, and the batch's share of all voxels.
+    of_batches: Vec<(f64, f64)>,
     done: f64,
-    voxels: usize,
 }
 
-impl<'a> Progress<'a> {
-    fn new(queue: &'a Queue) -> Result<Self> {
+impl Progress {
+    fn new(queue: &Queue) -> Result<Self> {
+        let voxels = |parts: &[Part]| parts.iter().map(Part::voxels).sum::<usize>() as f64;
+        let all = voxels(queue.parts);
+        let batches = 0..queue.batches.len();
         Ok(Self {
-            queue,
-            of_batches: collected(queue.batches.iter().map(|_| 0.0))?,
+            of_batches: collected(batches.map(|batch| (0.0, voxels(queue.parts(batch)) / all)))?,
             done: 0.0,
-            voxels: voxels(queue.parts),
         })
     }
 
     /// What is done of all, once so much of a batch is.
     fn of_all(&mut self, batch: usize, fraction: f64) -> f64 {
-        let more = fraction - std::mem::replace(&mut self.of_batches[batch], fraction);
-        self.done += more * voxels(self.queue.parts(batch)) as f64 / self.voxels as f64;
+        let (done, share) = &mut self.of_batches[batch];
+        self.done += (fraction - std::mem::replace(done, fraction)) * *share;
         self.done
     }
-}
-
-fn voxels(parts: &[Part]) -> usize {
-    parts.iter().map(Part::voxels).sum()
 }
 
 /// Hands what `work` makes of the parts' ridge fields to `keep`, as [`for_each_batch`]; `stage` is
