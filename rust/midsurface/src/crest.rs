@@ -16,7 +16,7 @@ use crate::execution::Execution;
 use crate::grid::{dot as dot3, last_voxel, Vec3};
 use crate::profile::{Derivatives, Profile};
 use crate::separable::{self, smooth_some, Kernel};
-use crate::sheet::{dot, source, unshrink, Sheet, ENTRIES, TRUSTED};
+use crate::sheet::{dot, source, unshrink, voxel_along, Sheet, ENTRIES, TRUSTED};
 use crate::vectors::with_widest_vectors;
 
 /// A core voxel's profile falls within the sheet by at most this much, in σ² times curvature.
@@ -26,6 +26,9 @@ const BENT: f32 = 0.32;
 /// The normals around a core voxel vary by at most this share of what they have in common, as the
 /// middle eigenvalue of their tensor over the largest, both above the least.
 const VARIED: f32 = 0.15;
+/// A voxel longer than this along the normal, work units, is no core voxel beside the label: there the
+/// profile has fallen too far to tell where its crest is.
+const LONG: f32 = 1.25;
 /// Bounds of the standard deviation ρ of the tensors' smoothing, which is σ, in work units.
 const RHO_BOUNDS: [f32; 2] = [1.2, 3.4];
 /// Kernels of ρ are made at steps of this ratio.
@@ -59,7 +62,7 @@ pub(crate) fn core_sheets(
             #[inline(always)]
             || {
                 let derivatives = profile.derivatives(batch, brick, h);
-                find_tensors(&derivatives, own, border.as_ref(), out);
+                find_tensors(&derivatives, own, border.as_ref(), h, out);
             },
         );
     })?;
@@ -75,13 +78,11 @@ pub(crate) fn core_sheets(
             #[inline(always)]
             || {
                 let derivatives = profile.derivatives(batch, brick, h);
-                find_sheets(
-                    &derivatives,
-                    tensors,
-                    &near.largest_near(),
-                    farthest,
-                    sheets,
+                let label = (
+                    &distance[brick * BRICK..][..BRICK],
+                    &near.largest_near()[..],
                 );
+                find_sheets(&derivatives, tensors, label, (farthest, h), sheets);
             },
         );
         if let Some(border) = border(brick) {
@@ -197,8 +198,10 @@ fn find_tensors(
     layers: &[Derivatives],
     distance: &[f32],
     border: Option<&Border>,
+    h: Vec3,
     tensors: &mut [f32],
 ) {
+    let h = h.map(|h| h as f32);
     for (z, (layer, distance)) in layers.iter().zip(distance.chunks_exact(LAYER)).enumerate() {
         if distance.iter().all(|d| *d == 0.0) {
             continue;
@@ -221,7 +224,7 @@ fn find_tensors(
         let mut products = [[0.0; LAYER]; ENTRIES];
         for i in 0..LAYER {
             let e = vector_at(&sources, i);
-            let trust = trust(layer, i, e);
+            let trust = trust(layer, i, e, h);
             let e = [e[0] * trust, e[1] * trust, e[2] * trust];
             let zz = e[2] * e[2];
             let own = [
@@ -241,13 +244,16 @@ fn find_tensors(
     }
 }
 
-/// How far a voxel's own normal counts, 0 to 1: less the steeper the profile falls within the sheet.
+/// How far a voxel's own normal counts, 0 to 1: less the steeper the profile falls within the sheet, and
+/// the farther off the middle is, but where voxels are long the nearest may be half of that away.
 #[inline(always)]
-fn trust(layer: &Derivatives, i: usize, e: [f32; 3]) -> f32 {
+fn trust(layer: &Derivatives, i: usize, e: [f32; 3], h: [f32; 3]) -> f32 {
     let length = dot(e, e).sqrt().max(f32::MIN_POSITIVE);
     let n = [e[0] / length, e[1] / length, e[2] / length];
     let (offset, tangential, bent) = step(layer, i, n);
-    let share = tangential.max(offset.abs()) / (TANGENTIAL * layer.sigma[i]);
+    let most = TANGENTIAL * layer.sigma[i];
+    let longer = 0.5 * (voxel_along(n, h) - 1.0);
+    let share = (tangential / most).max(offset.abs() / (most + longer));
     let clear = 1.0 - (bent / BENT).max(0.0);
     if share < 1.0 && clear > 0.0 {
         (1.0 - share * share) * clear
@@ -284,16 +290,18 @@ fn smooth_tensors(
     smooth_some(batch, kernel_of, tensors, &mut scratch, execution)
 }
 
-/// Fills in the sheets of a brick's core voxels, where the label is `near`.
+/// Fills in the sheets of a brick's core voxels, in the label or with the label `near`.
 #[inline(always)]
 fn find_sheets(
     layers: &[Derivatives],
     tensors: &[f32],
-    near: &[f32],
-    farthest: f32,
+    (inside, near): (&[f32], &[f32]),
+    (farthest, h): (f32, Vec3),
     sheets: &mut [Sheet],
 ) {
+    let h = h.map(|h| h as f32);
     for (z, (layer, near)) in layers.iter().zip(near.chunks_exact(LAYER)).enumerate() {
+        let inside = &inside[z * LAYER..][..LAYER];
         if near.iter().all(|d| *d == 0.0) {
             continue;
         }
@@ -306,7 +314,9 @@ fn find_sheets(
             let n = eigenvector(tensor, largest);
             let (offset, tangential, bent) = step(layer, i, n);
             let most = (TRUSTED as f32 * layer.sigma[i] + 0.5).min(farthest);
+            let close = (inside[i] > 0.0) | (voxel_along(n, h) <= LONG);
             let core = (near[i] > 0.0)
+                & close
                 & (offset.abs() <= most)
                 & (tangential <= TANGENTIAL * layer.sigma[i])
                 & (bent <= BENT)

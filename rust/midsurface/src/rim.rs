@@ -12,14 +12,16 @@ use crate::grid::Vec3;
 use crate::profile::mask;
 use crate::scale::{self, BrickMeans};
 use crate::separable::{self, smooth_some, Kernel};
-use crate::sheet::Sheet;
+use crate::sheet::{voxel_along, Sheet};
 
 /// σ of the smoothing, work units.
 const SIGMA: f64 = 1.0;
 /// Where the kernel is cut off, in σ.
 const REACH: f64 = 2.6;
-/// How near to the middle of a sheet its inside is measured, work units.
+/// How near to the middle of a sheet its inside is measured, work units, and how much of what a voxel is
+/// longer along the normal is added: midway between two layers both count.
 const CLOSE: f32 = 0.5;
+const LONGER: f32 = 0.65;
 
 /// Passes over all bricks that [`sheet_fraction`] makes, for its progress.
 pub(crate) const PASSES: usize = 2 + separable::PASSES + scale::PASSES;
@@ -40,6 +42,7 @@ pub(crate) fn sheet_fraction(
     let mut scratch = batch.field()?;
     values = smooth_some(batch, |_| Some(&kernels), values, &mut scratch, execution)?;
     drop(scratch);
+    let spacing = h.map(|h| h as f32);
     let inside = BrickMeans::new(
         batch,
         |brick| {
@@ -50,7 +53,9 @@ pub(crate) fn sheet_fraction(
                 .zip(&sheets[own.clone()])
                 .zip(&distance[own])
             {
-                if *d > 0.0 && *sheet != Sheet::default() && sheet[3].abs() < CLOSE {
+                let [x, y, z, offset] = *sheet;
+                let close = CLOSE + LONGER * (voxel_along([x, y, z], spacing) - 1.0);
+                if *d > 0.0 && *sheet != Sheet::default() && offset.abs() < close {
                     // High powers: the inside counts, rims do not.
                     let fourth = (value * value) * (value * value);
                     sums = [sums[0] + fourth * value, sums[1] + fourth];

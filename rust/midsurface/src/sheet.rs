@@ -230,6 +230,13 @@ pub(crate) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// How long a voxel of the spacing `h` is along a unit vector.
+#[inline(always)]
+pub(crate) fn voxel_along(n: [f32; 3], h: [f32; 3]) -> f32 {
+    let along = [n[0] * h[0], n[1] * h[1], n[2] * h[2]];
+    dot(along, along).sqrt()
+}
+
 impl Block<f32> {
     /// A smooth field around a brick.
     pub(crate) fn smooth(batch: &Batch, brick: usize, field: &[f32]) -> Self {

@@ -255,3 +255,13 @@ must!(
     "disk with a hole, slices apart",
     NOISY
 );
+must!(
+    disk_lying_in_slices_apart_clean,
+    "disk lying in slices apart",
+    CLEAN
+);
+must!(
+    disk_lying_in_slices_apart_noisy,
+    "disk lying in slices apart",
+    NOISY
+);

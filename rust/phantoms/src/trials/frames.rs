@@ -5,7 +5,7 @@ use super::Trial;
 use crate::dice::Dice;
 use crate::phantom::{Frame, Phantom, Thickness};
 use crate::shape::{Hole, Rim, Shape};
-use crate::vector::{scale, Vec3};
+use crate::vector::{scale, sub, unit, Vec3};
 
 pub(super) fn frame_trials() -> Vec<Trial> {
     vec![
@@ -52,7 +52,29 @@ pub(super) fn frame_trials() -> Vec<Trial> {
                 (shape, thick, [1, 0, 2])
             })
         }),
+        Trial::new("disk lying in slices apart", lying_in_slices),
     ]
+}
+
+/// A disk with a hole that fills a few slices exactly, so that its middle is known.
+fn lying_in_slices(dice: &mut Dice) -> Phantom {
+    let frame = stretched(dice);
+    let layers = dice.one_of(&[2.0, 3.0, 4.0, 5.0]);
+    let middle = frame.dimensions.map(|n| (n as f64 / 2.0).floor());
+    let [x, y] = [(); 2].map(|()| dice.between(-0.7, 0.7));
+    let z = middle[2] + 0.5 * (layers - 1.0);
+    let centre = frame.world([middle[0] + x, middle[1] + y, z]);
+    let along_z = sub(frame.world([0.0, 0.0, 1.0]), frame.world([0.0; 3]));
+    let radius = frame.unit() * dice.between(12.0, 16.0);
+    let shape = Shape::Plane {
+        centre,
+        normal: unit(along_z),
+        rim: Rim::Circle(34.0 * frame.unit()),
+        holes: vec![Hole { centre, radius }],
+    };
+    // A little less than what reaches the next slices.
+    let thickness = Thickness::Constant((layers - 0.1) * frame.spacing[2]);
+    single(frame, shape, thickness, [1, 0, 2])
 }
 
 /// Slices up to 4 times as far apart as the voxels within them, lying and placed anyhow.
