@@ -6,7 +6,7 @@
 //! the one run into the other. A rim that touches another triangle is drawn back into its own
 //! sheet, step by step and no farther than it takes. What touches even so is cut away.
 //!
-//! Only rims are looked at, in the cells of a grid, so that it costs little where nothing touches.
+//! Only rims and what is next to them are looked at, in the cells of a grid, so that it costs little where nothing touches.
 
 use crate::buckets::Buckets;
 use crate::cells::{bounds, near, overlap, Cells};
@@ -16,7 +16,7 @@ use crate::grid::{along, sub};
 use crate::halfedge::{Fans, NONE};
 use crate::manifold::{make_manifold, Surface};
 use crate::scraps::drop_scraps;
-use crate::touching::touch;
+use crate::touching::{touch, TOUCHING};
 
 /// Share of the way to the points next to the rim that a rim point is drawn back in a step, and the
 /// most steps: in all about half of the way.
@@ -26,6 +26,14 @@ const STEPS: usize = 6;
 const CUTS: usize = 8;
 /// How far from a rim that is drawn back others may begin to touch, in lengths of an edge.
 const REACH: f64 = 1.5;
+/// Rings of points beside a rim whose triangles are looked at, too: what is led on to where sheets meet
+/// may crumple behind its rim.
+type Ring = u8;
+const RINGS: Ring = 2;
+const FAR: Ring = Ring::MAX;
+/// Triangles that have no point on a rim touch if they are nearer to each other than this, work units:
+/// as far as rounding goes.
+const CROSSING: f64 = 1e-4;
 /// Triangles or points handed to a worker at a time.
 const PIECE: usize = 4096;
 /// Passes over the triangles that [`remove_self_intersections`] makes where nothing touches, for its
@@ -44,13 +52,14 @@ pub(crate) fn remove_self_intersections(
 ) -> Result<Fans> {
     for cut in 1..=CUTS {
         let on_rim = on_rim(surface, &fans, execution)?;
+        let rings = rings(surface, &on_rim)?;
         let all = collected(0..surface.triangles.len() as u32)?;
-        let touching = touching(surface, &on_rim, &all, component, execution)?;
+        let touching = touching(surface, &rings, &all, component, execution)?;
         if touching.is_empty() {
             break;
         }
         let near = near(surface, touching.as_flattened(), REACH * edge)?;
-        let rims = (&fans, on_rim.as_slice());
+        let rims = (&fans, on_rim.as_slice(), rings.as_slice());
         let left = draw_back(surface, rims, &near, touching, component, execution)?;
         if left.is_empty() {
             continue;
@@ -73,20 +82,34 @@ fn on_rim(surface: &Surface, fans: &Fans, execution: &mut Execution) -> Result<V
     Ok(on_rim)
 }
 
-/// The pairs among some triangles that touch, one of them at a rim.
+/// How far each point is from a rim, counted in edges.
+fn rings(surface: &Surface, on_rim: &[bool]) -> Result<Vec<Ring>> {
+    let mut rings = collected(on_rim.iter().map(|on_rim| if *on_rim { 0 } else { FAR }))?;
+    for ring in 1..=RINGS {
+        for corners in surface.triangles.iter().map(|t| t.map(|p| p as usize)) {
+            if corners.iter().any(|&p| rings[p] < ring) {
+                corners.iter().for_each(|&p| rings[p] = rings[p].min(ring));
+            }
+        }
+    }
+    Ok(rings)
+}
+
+/// The pairs among some triangles that touch, one of them at a rim; where there is none, near one.
 fn touching(
     surface: &Surface,
-    on_rim: &[bool],
+    rings: &[Ring],
     among: &[u32],
     component: &(impl Fn(u32) -> u32 + Sync),
     execution: &mut Execution,
 ) -> Result<Vec<[u32; 2]>> {
-    let is_at_rim = |t: u32| {
-        surface.triangles[t as usize]
-            .iter()
-            .any(|&p| on_rim[p as usize])
+    let ring = |t: u32| {
+        let corners = surface.triangles[t as usize].iter();
+        corners.map(|&p| rings[p as usize]).min().unwrap_or(FAR)
     };
-    let at_rim = collected(among.iter().copied().filter(|&t| is_at_rim(t)))?;
+    let is_near_rim = |t: u32| ring(t) < FAR;
+    let is_at_rim = |pair: [u32; 2]| pair.iter().any(|&t| ring(t) == 0);
+    let at_rim = collected(among.iter().copied().filter(|&t| is_near_rim(t)))?;
     if at_rim.is_empty() {
         return Ok(Vec::new());
     }
@@ -103,14 +126,19 @@ fn touching(
     let touches = |t: u32, rim: u32| {
         let (own, other) = (bounds(surface, t), bounds(surface, rim));
         let [a, b] = [t, rim].map(|t| surface.triangles[t as usize]);
+        let room = if is_at_rim([t, rim]) {
+            TOUCHING
+        } else {
+            CROSSING
+        };
         let is_same = |p: u32, q: u32| {
             component(surface.source[p as usize]) == component(surface.source[q as usize])
         };
         // Two at rims meet twice.
-        (t < rim || !is_at_rim(t))
+        (t < rim || !is_near_rim(t))
             && overlap(own, other)
             && is_same(a[0], b[0])
-            && touch(a, b, &surface.points)
+            && touch(a, b, &surface.points, room)
     };
     let pieces = collected(among.chunks(PIECE))?;
     let mut pairs = Vec::new();
@@ -132,13 +160,17 @@ fn touching(
     // Two triangles may meet in several cells.
     pairs.sort_unstable();
     pairs.dedup();
+    // What touches behind a rim may be rid of together with that.
+    if pairs.iter().any(|pair| is_at_rim(*pair)) {
+        pairs.retain(|pair| is_at_rim(*pair));
+    }
     Ok(pairs)
 }
 
 /// Draws the rims of pairs that touch back; returns the pairs that touch in the end.
 fn draw_back(
     surface: &mut Surface,
-    (fans, on_rim): (&Fans, &[bool]),
+    (fans, on_rim, rings): (&Fans, &[bool], &[Ring]),
     near: &[u32],
     mut touching: Vec<[u32; 2]>,
     component: &(impl Fn(u32) -> u32 + Sync),
@@ -166,7 +198,7 @@ fn draw_back(
                 *point = along(*point, STEP / count, way);
             }
         }
-        touching = self::touching(surface, on_rim, near, component, execution)?;
+        touching = self::touching(surface, rings, near, component, execution)?;
         if touching.is_empty() {
             break;
         }
@@ -263,7 +295,8 @@ mod tests {
     /// Pairs of triangles that touch, whether at a rim or not.
     fn count_touching(surface: &Surface) -> usize {
         let t = &surface.triangles;
-        let touching = |a: usize| (0..a).filter(move |&b| touch(t[a], t[b], &surface.points));
+        let touching =
+            |a: usize| (0..a).filter(move |&b| touch(t[a], t[b], &surface.points, TOUCHING));
         (0..t.len()).flat_map(touching).count()
     }
 

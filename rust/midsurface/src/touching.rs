@@ -6,8 +6,9 @@ use crate::grid::{along, cross, dot, length, squared_distance, sub, Vec3};
 /// coordinates, and less than anybody sees.
 pub(crate) const TOUCHING: f64 = 0.004;
 
-/// Whether two triangles have more in common than the points or the edge that they share.
-pub(crate) fn touch(a: [u32; 3], b: [u32; 3], points: &[Vec3]) -> bool {
+/// Whether two triangles have more in common than the points or the edge that they share, or come
+/// nearer to each other than `room`.
+pub(crate) fn touch(a: [u32; 3], b: [u32; 3], points: &[Vec3], room: f64) -> bool {
     let place = |p: u32| points[p as usize];
     let (s, t) = (a.map(place), b.map(place));
     let opposite = |of: [u32; 3], other: [u32; 3]| {
@@ -17,27 +18,27 @@ pub(crate) fn touch(a: [u32; 3], b: [u32; 3], points: &[Vec3]) -> bool {
     match a.iter().filter(|p| b.contains(p)).count() {
         0 => {
             let side = |t: [Vec3; 3], i: usize| [t[i], t[(i + 1) % 3]];
-            !lies_beside(s, t)
-                && !lies_beside(t, s)
-                && (0..3).any(|i| is_near(side(s, i), t) || is_near(side(t, i), s))
+            !lies_beside(s, t, room)
+                && !lies_beside(t, s, room)
+                && (0..3).any(|i| is_near(side(s, i), t, room) || is_near(side(t, i), s, room))
         }
         // Whatever they share beyond the point, the side opposite to it in one of them reaches.
-        1 => is_near(opposite(a, b), t) || is_near(opposite(b, a), s),
+        1 => is_near(opposite(a, b), t, room) || is_near(opposite(b, a), s, room),
         _ => false,
     }
 }
 
 /// Whether a triangle lies on one side of another's plane.
-fn lies_beside(t: [Vec3; 3], other: [Vec3; 3]) -> bool {
+fn lies_beside(t: [Vec3; 3], other: [Vec3; 3], room: f64) -> bool {
     let [a, b, c] = other;
     let normal = cross(sub(b, a), sub(c, a));
     let heights = t.map(|p| dot(normal, sub(p, a)));
-    let room = TOUCHING * length(normal);
+    let room = room * length(normal);
     heights.iter().all(|&h| h > room) || heights.iter().all(|&h| h < -room)
 }
 
 /// Whether a segment touches a triangle.
-fn is_near([p, q]: [Vec3; 2], t: [Vec3; 3]) -> bool {
+fn is_near([p, q]: [Vec3; 2], t: [Vec3; 3], room: f64) -> bool {
     let normal = cross(sub(t[1], t[0]), sub(t[2], t[0]));
     let [above, below] = [p, q].map(|end| dot(normal, sub(end, t[0])));
     let inside = |p: Vec3| {
@@ -46,10 +47,10 @@ fn is_near([p, q]: [Vec3; 2], t: [Vec3; 3]) -> bool {
     if above * below < 0.0 && inside(along(p, above / (above - below), sub(q, p))) {
         return true;
     }
-    let room = TOUCHING * length(normal);
-    (above.abs() < room && inside(p))
-        || (below.abs() < room && inside(q))
-        || (0..3).any(|i| squared_gap([p, q], [t[i], t[(i + 1) % 3]]) < TOUCHING * TOUCHING)
+    let height = room * length(normal);
+    (above.abs() < height && inside(p))
+        || (below.abs() < height && inside(q))
+        || (0..3).any(|i| squared_gap([p, q], [t[i], t[(i + 1) % 3]]) < room * room)
 }
 
 /// Squared distance between two segments (Ericson, "Real-time collision detection", 2005, 5.1.9).
@@ -77,7 +78,7 @@ mod tests {
 
     /// Whether the triangle of the first three points touches the one of the last three.
     fn meet(points: [Vec3; 6]) -> bool {
-        touch([0, 1, 2], [3, 4, 5], &points)
+        touch([0, 1, 2], [3, 4, 5], &points, TOUCHING)
     }
 
     #[test]
@@ -113,11 +114,11 @@ mod tests {
             [-2.0, 0.0, 0.0],
             [0.0, -2.0, 0.0],
         ];
-        assert!(!touch([0, 1, 2], [1, 0, 4], &points));
-        assert!(!touch([0, 1, 2], [0, 3, 4], &points));
+        assert!(!touch([0, 1, 2], [1, 0, 4], &points, TOUCHING));
+        assert!(!touch([0, 1, 2], [0, 3, 4], &points, TOUCHING));
         // The last point swings over into the first triangle.
         points[3] = [1.0, 0.5, 0.5];
         points[4] = [1.0, 0.5, -0.5];
-        assert!(touch([0, 1, 2], [0, 3, 4], &points));
+        assert!(touch([0, 1, 2], [0, 3, 4], &points, TOUCHING));
     }
 }
