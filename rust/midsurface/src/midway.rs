@@ -4,7 +4,8 @@
 //! themselves have no such bias: from each point both are looked for along the normal
 //! (`thickness.rs`), and half the difference of their distances is how far the point is off. Faces
 //! are known to about a voxel, so the figure is averaged over the surface around, which, being a
-//! number along the normals, neither shrinks nor bends what is curved.
+//! number along the normals, neither shrinks nor bends what is curved. Where sheets meet and none of
+//! the points around sees both faces, the surface is made fair (`fairing.rs`).
 //!
 //! The finished mesh takes one more step: what a point alone sees is noise more than it is shape, so
 //! it goes a small share of that way, as a Wiener filter would have it. Being off the middle falls in
@@ -13,8 +14,9 @@
 
 use crate::bricks::Batch;
 use crate::buckets::{self, Buckets};
-use crate::error::{zeros, Result};
+use crate::error::{collected, zeros, Result};
 use crate::execution::Execution;
+use crate::fairing::{self, fair};
 use crate::grid::{along, dot, last_voxel, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
@@ -43,6 +45,8 @@ const MOVES: [Move; 4] = [(12, 2.0, 4), (9, 1.0, 2), (7, 0.8, 2), (6, 0.7, 1)];
 type Move = (usize, f64, u8);
 /// Rounds of averaging normals: along rough ones neighbours would move apart, and fold the surface.
 const NORMAL_ROUNDS: usize = 6;
+/// Where fewer of the points around see both faces than this share, the surface is made fair.
+const SIGHT: f32 = 0.8;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 /// The share of the way that a point of the finished mesh goes by itself, and from where on what it
@@ -54,7 +58,7 @@ pub(crate) const CLOSER_PASSES: usize = 1;
 /// Passes over the points that [`move_midway`] makes, for its progress.
 pub(crate) const PASSES: usize = {
     let rounds = MOVES[0].0 + MOVES[1].0 + MOVES[2].0 + MOVES[3].0;
-    buckets::PASSES + MOVES.len() * (2 + NORMAL_ROUNDS) + rounds
+    buckets::PASSES + MOVES.len() * (2 + NORMAL_ROUNDS) + rounds + fairing::PASSES
 };
 
 /// How far off each point is, and how much of that was seen there.
@@ -146,8 +150,9 @@ pub(crate) fn move_midway(
     execution: &mut Execution,
 ) -> Result<()> {
     let neighbours = fans.neighbours(&surface.triangles, execution)?;
+    let (mut normals, mut seen) = (Vec::new(), Vec::new());
     for step in MOVES {
-        move_once(
+        (normals, seen) = move_once(
             label,
             (surface, fraction),
             (fans, &neighbours),
@@ -155,16 +160,45 @@ pub(crate) fn move_midway(
             execution,
         )?;
     }
+    let blind = blind(surface, fraction, &seen, (fans, &neighbours))?;
+    let off = fair(surface, &normals, &blind, (fans, &neighbours), execution)?;
+    let last = label.last();
+    for (p, off) in off {
+        let p = p as usize;
+        surface.points[p] = within_volume(surface.points[p], normals[p], off, last);
+    }
     Ok(())
 }
 
+/// Whether each point is where too few see both faces, though no rim of the label is near, and none
+/// of the surface, either.
+fn blind(
+    surface: &Surface,
+    fraction: &[f64],
+    seen: &[Seen],
+    (fans, neighbours): (&Fans, &Buckets<u32>),
+) -> Result<Vec<bool>> {
+    let is_on_rim = |&p: &u32| fans.is_boundary(&surface.triangles, p);
+    let around = |&p: &u32| neighbours.of(p as usize).iter();
+    let is_inside = |p: u32| {
+        let mut near = around(&p).flat_map(around);
+        !near.any(is_on_rim)
+    };
+    let points = fraction.iter().zip(seen).enumerate();
+    let is_blind = |(p, (fraction, [_, weight])): (usize, (&f64, &Seen))| {
+        *fraction >= WHOLE && *weight < SIGHT && is_inside(p as u32)
+    };
+    collected(points.map(is_blind))
+}
+
+/// Moves the points once; the normals along which, and what was seen around each.
 fn move_once(
     label: &Label,
     (surface, fraction): (&mut Surface, &[f64]),
     (fans, neighbours): (&Fans, &Buckets<u32>),
     (rounds, most, one_in): Move,
     execution: &mut Execution,
-) -> Result<()> {
+) -> Result<(Vec<Vec3>, Vec<Seen>)> {
     let mut rough: Vec<Vec3> = zeros(surface.points.len())?;
     execution.fill(&mut rough, PIECE, |piece, out| {
         for (i, out) in out.iter_mut().enumerate() {
@@ -195,7 +229,7 @@ fn move_once(
             *p = within_volume(*p, *n, f64::from(off / weight), last);
         }
     }
-    Ok(())
+    Ok((normals, seen))
 }
 
 /// How far off the points are that look: up to `most`, and one in so many where no rim is near.
