@@ -18,7 +18,7 @@
 //! | profile | mask → the mask smoothed as wide as it is thick | `profile.rs` |
 //! | sheets | profile → normal and offset of the sheet at every voxel near it | `crest.rs`, `extension.rs`, `settle.rs` |
 //! | contour | sheets → a surface through them, cut at the label's rims | `contour.rs`, `rim.rs`, `trim.rs`, `scraps.rs` |
-//! | midway | surface → surface midway between both faces, led on to where sheets meet | `midway.rs`, `fairing.rs`, `reach.rs` |
+//! | midway | surface → surface without false holes, midway between both faces, led on to where sheets meet | `holes.rs`, `midway.rs`, `fairing.rs`, `reach.rs` |
 //! | mesh | triangles → nearly equilateral ones, no terraces, no self-intersections | `remesh`, `terraces.rs`, `self_intersections.rs` |
 //!
 //! The polyline zipper is the method of Boneš et al., "MidSurfer: A Parameter-Free Approach for
@@ -66,6 +66,7 @@ mod findings;
 mod flips;
 mod grid;
 mod halfedge;
+mod holes;
 #[cfg(feature = "inject-panics")]
 pub mod injected_panics;
 mod interpolation;

@@ -18,7 +18,7 @@ use crate::manifold::Surface;
 use crate::midway::Label;
 
 /// Sheet fraction from which on a rim is a blind one.
-const WITHIN: f64 = 0.8;
+pub(crate) const WITHIN: f64 = 0.8;
 /// How far a blind rim looks ahead, and how far before what it sees it ends, work units.
 const AHEAD: f64 = 4.0;
 const APART: f64 = 0.1;

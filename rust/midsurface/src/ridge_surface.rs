@@ -4,10 +4,10 @@
 //! (`profile.rs`), the sheets at its crest (`crest.rs`), how they bend (`bending.rs`) and on to
 //! beyond the rims (`extension.rs`), a surface through them (`contour.rs`), wound the same way
 //! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
-//! (`weld.rs`), moved midway between both faces (`midway.rs`), led on to where
-//! sheets meet (`reach.rs`), remeshed (`remesh`), rid of terraces
-//! (`terraces.rs`), moved a last little step (`midway.rs`) and rid of self-intersections
-//! (`self_intersections.rs`). How much of the progress a
+//! (`weld.rs`), closed where it has holes within the label (`holes.rs`), moved midway between both
+//! faces (`midway.rs`), made fair where these are not seen (`fairing.rs`), led on to where sheets meet
+//! (`reach.rs`), remeshed (`remesh`), rid of terraces (`terraces.rs`), moved a last little step
+//! (`midway.rs`) and rid of self-intersections (`self_intersections.rs`). How much of the progress a
 //! stage is given is how long it took on the membranes of real cells.
 
 use crate::bending;
@@ -21,6 +21,7 @@ use crate::execution::Execution;
 use crate::extension;
 use crate::grid::{last_voxel, Grid, Vec3};
 use crate::halfedge::Fans;
+use crate::holes::{self, close_holes};
 use crate::interpolation::Sampler;
 use crate::manifold::{self, make_manifold, Surface};
 use crate::mask::{self, Mask};
@@ -79,17 +80,17 @@ pub(crate) fn ridge_surface(
     let distance = distance::distance(batch, h, execution)?;
     let sheets = find_sheets(batch, &distance, h, execution)?;
     let (mut surface, fraction) = cut_surface(batch, sheets, &distance, h, execution)?;
-    let passes = mask::PASSES + 1 + midway::PASSES + reach::PASSES;
+    let passes = mask::PASSES + holes::PASSES + 1 + midway::PASSES + reach::PASSES;
     execution.stage("Moving midway", 0.49, 0.65, passes)?;
     let mask = Mask::new(batch, &distance, execution)?;
-    let fraction = values(batch, &surface, &fraction, h, execution)?;
     let label = Label {
         batch,
         distance: &distance,
         mask: &mask,
         h,
     };
-    let fans = Fans::new(&surface.triangles, surface.points.len())?;
+    let fans = close_holes(&label, &mut surface, &fraction, execution)?;
+    let fraction = values(batch, &surface, &fraction, h, execution)?;
     move_midway(&label, &mut surface, &fraction, &fans, execution)?;
     reach(&label, &mut surface, &fraction, &fans, execution)?;
     drop((fans, fraction));

@@ -1,0 +1,434 @@
+//! Surface → surface without holes inside the label.
+//!
+//! Where sheets meet, voxels know of several, and where neighbours settle on different ones the
+//! contour of the sheet that goes through has holes; of two that go through each other each has
+//! holes where the other passes. A hole of the label has a rim where the sheet fraction (`rim.rs`) is
+//! ½; where it is about 1 all around, and the label is there all over, there is none, and the
+//! surface is closed: by the triangles between the points of the hole's rim whose edges are shortest
+//! (dynamic programming, as in Liepa 2003, "Filling holes in meshes"). What passes through the hole
+//! across is cut away, smaller holes first, so that in the end one of the two sheets goes through
+//! and the other one ends at it on both sides.
+//!
+//! What is not closed: what is wider than [`WIDEST`], or could only be closed by turning over, as
+//! the rim of a scrap could.
+
+use std::ops::Range;
+
+use crate::buckets::Buckets;
+use crate::cells::{bounds, near, overlap, Cells};
+use crate::error::{collected, extend, filled, push, zeros, Result};
+use crate::execution::Execution;
+use crate::grid::{along, cross, dot, length, squared_distance, sub, unit, Vec3};
+use crate::halfedge::{ends, Fans, NONE};
+use crate::interpolation::Sampler;
+use crate::manifold::{split_points_among, Surface};
+use crate::midway::Label;
+use crate::normals::normal_of_fan;
+use crate::reach::WITHIN;
+use crate::scraps::drop_scraps;
+use crate::touching::{touch, TOUCHING};
+
+/// Points of a hole's rim at most, and the longest edge across it, work units.
+const MOST: usize = 256;
+const WIDEST: f64 = 8.0;
+/// Across a hole the label is at least this share as deep as at its rim, looked at in such steps,
+/// work units.
+const DEEP: f64 = 0.5;
+const STEP: f64 = 0.5;
+/// Triangles that close a hole turn no farther than this cosine away from the surface at its rim.
+const TURNED: f64 = 0.3;
+/// What passes through a hole does so with no more than this cosine between the normals.
+const ACROSS: f64 = 0.8;
+/// Rounds; in each one holes are closed that have nothing in common.
+const ROUNDS: usize = 12;
+/// Points handed to a worker at a time.
+const PIECE: usize = 4096;
+/// Passes over the points that [`close_holes`] makes where there is nothing to close.
+pub(crate) const PASSES: usize = 1;
+
+/// Closes the holes of a consistently wound 2-manifold that are none of the label's. `fraction` is
+/// the sheet fraction at the voxels. Returns the surface's fans.
+pub(crate) fn close_holes(
+    label: &Label,
+    surface: &mut Surface,
+    fraction: &[f32],
+    execution: &mut Execution,
+) -> Result<Fans> {
+    let mut fans = Fans::new(&surface.triangles, surface.points.len())?;
+    for _ in 0..ROUNDS {
+        let holes = holes(label, surface, &fans, fraction, execution)?;
+        let mut patches = Vec::new();
+        for rim in holes {
+            if let Some(triangles) = Rim::new(label, surface, &fans, &rim)?.closed()? {
+                push(&mut patches, Patch { rim, triangles })?;
+            }
+        }
+        if patches.is_empty() || !close(surface, &patches)? {
+            break;
+        }
+        fans = Fans::new(&surface.triangles, surface.points.len())?;
+    }
+    Ok(fans)
+}
+
+/// What closes a hole: triangles between the points of its rim.
+struct Patch {
+    rim: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// The rims of holes within the label, each as its points in the order of the boundary's half-edges,
+/// those of few points first.
+fn holes(
+    label: &Label,
+    surface: &Surface,
+    fans: &Fans,
+    fraction: &[f32],
+    execution: &mut Execution,
+) -> Result<Vec<Vec<u32>>> {
+    let mut is_blind: Vec<bool> = zeros(surface.points.len())?;
+    execution.fill(&mut is_blind, PIECE, |piece, out| {
+        for (i, is_blind) in out.iter_mut().enumerate() {
+            let p = PIECE * piece + i;
+            let sampler = Sampler {
+                directory: &label.batch.directories[surface.source[p] as usize],
+                field: fraction,
+                h: label.h,
+            };
+            let point = surface.points[p];
+            *is_blind = fans.is_boundary(&surface.triangles, p as u32)
+                && sampler.linear(point) >= WITHIN
+                && !label.on_border(point).contains(&true);
+        }
+    })?;
+    let after = |p: u32| {
+        let mut leaving = fans.of(p).iter().copied();
+        let on_rim = leaving.find(|&e| fans.twin(&surface.triangles, e) == NONE)?;
+        Some(ends(&surface.triangles, on_rim).1)
+    };
+    let mut holes = Vec::new();
+    for first in 0..surface.points.len() as u32 {
+        let mut rim = Vec::new();
+        let mut at = first;
+        // A rim that is not blind all around ends where it was left before, or is not.
+        while std::mem::take(&mut is_blind[at as usize]) {
+            push(&mut rim, at)?;
+            match after(at) {
+                Some(after) => at = after,
+                None => break,
+            }
+        }
+        if at == first && (3..=MOST).contains(&rim.len()) {
+            push(&mut holes, rim)?;
+        }
+    }
+    holes.sort_by_key(Vec::len);
+    Ok(holes)
+}
+
+/// The rim of a hole that may be closed.
+struct Rim<'a> {
+    surface: &'a Surface,
+    fans: &'a Fans,
+    points: &'a [u32],
+    places: Vec<Vec3>,
+    /// The surface's normals at the points.
+    normals: Vec<Vec3>,
+    /// How deep the label is at the points.
+    depths: Vec<f64>,
+    distance: Sampler<'a>,
+}
+
+impl<'a> Rim<'a> {
+    fn new(
+        label: &'a Label,
+        surface: &'a Surface,
+        fans: &'a Fans,
+        points: &'a [u32],
+    ) -> Result<Self> {
+        let distance = label.distance(surface.source[points[0] as usize]);
+        let places = collected(points.iter().map(|&p| surface.points[p as usize]))?;
+        let normal = |&p: &u32| normal_of_fan(&surface.points, &surface.triangles, fans.of(p));
+        Ok(Self {
+            normals: collected(points.iter().map(normal))?,
+            depths: collected(places.iter().map(|&p| distance.linear(p)))?,
+            surface,
+            fans,
+            points,
+            places,
+            distance,
+        })
+    }
+
+    /// The triangles that close the hole with the shortest edges; `None` where it cannot be closed.
+    fn closed(&self) -> Result<Option<Vec<[u32; 3]>>> {
+        let n = self.points.len();
+        // The least sum of squared edges that closes the rim from i to j, and the third corner.
+        let mut best: Vec<(f64, u32)> = filled((f64::INFINITY, 0), n * n)?;
+        for i in 1..n {
+            best[(i - 1) * n + i].0 = 0.0;
+        }
+        for span in 2..n {
+            for i in 0..n - span {
+                let j = i + span;
+                // The last edge is one of the rim's.
+                if span < n - 1 && !self.is_clear(i, j) {
+                    continue;
+                }
+                let own = squared_distance(self.places[i], self.places[j]);
+                for k in i + 1..j {
+                    let sum = own + best[i * n + k].0 + best[k * n + j].0;
+                    if sum < best[i * n + j].0 && self.is_level(i, k, j) {
+                        best[i * n + j] = (sum, k as u32);
+                    }
+                }
+            }
+        }
+        if best[n - 1].0.is_infinite() {
+            return Ok(None);
+        }
+        let mut triangles = Vec::new();
+        let mut open = collected([(0, n - 1)])?;
+        while let Some((i, j)) = open.pop() {
+            let k = best[i * n + j].1 as usize;
+            // The surface's half-edges run along the rim, so that these run back.
+            push(&mut triangles, [k, i, j].map(|at| self.points[at]))?;
+            for (from, to) in [(i, k), (k, j)] {
+                if to - from > 1 {
+                    push(&mut open, (from, to))?;
+                }
+            }
+        }
+        Ok(Some(triangles))
+    }
+
+    /// Whether an edge from one point to another would be new, short and within the label.
+    fn is_clear(&self, i: usize, j: usize) -> bool {
+        let across = sub(self.places[j], self.places[i]);
+        let steps = (length(across) / STEP).ceil() as usize;
+        let least = DEEP * self.depths[i].min(self.depths[j]);
+        let is_deep = |step: usize| {
+            let there = along(self.places[i], step as f64 / steps as f64, across);
+            self.distance.linear(there) >= least
+        };
+        let leads_to = |p: u32, q: u32| {
+            let mut leaving = self.fans.of(p).iter();
+            leaving.any(|&e| ends(&self.surface.triangles, e).1 == q)
+        };
+        let (p, q) = (self.points[i], self.points[j]);
+        length(across) <= WIDEST && !leads_to(p, q) && !leads_to(q, p) && (1..steps).all(is_deep)
+    }
+
+    /// Whether a triangle would lie as the surface does at its corners.
+    fn is_level(&self, i: usize, k: usize, j: usize) -> bool {
+        let [a, b, c] = [k, i, j].map(|at| self.places[at]);
+        let normal = unit(cross(sub(b, a), sub(c, a)));
+        [i, k, j]
+            .iter()
+            .all(|&at| dot(normal, self.normals[at]) >= TURNED)
+    }
+}
+
+/// Closes the holes that have nothing in common with one before; whether there are any.
+fn close(surface: &mut Surface, patches: &[Patch]) -> Result<bool> {
+    let first = surface.triangles.len();
+    for patch in patches {
+        extend(&mut surface.triangles, patch.triangles.iter().copied())?;
+    }
+    let mut crossings = Crossings {
+        pairs: crossed(surface, first)?,
+        taken: zeros(surface.points.len())?,
+        goes: zeros(surface.triangles.len())?,
+        first,
+    };
+    let (mut any, mut from) = (false, first);
+    for patch in patches {
+        let own = from..from + patch.triangles.len();
+        from = own.end;
+        any |= crossings.settle(surface, &patch.rim, own);
+    }
+    remove(surface, &crossings.goes, first)?;
+    Ok(any)
+}
+
+/// What patches cross, and what becomes of it.
+struct Crossings {
+    /// Triangles of patches, and others that they touch.
+    pairs: Vec<[u32; 2]>,
+    /// The points where something has changed.
+    taken: Vec<bool>,
+    /// The triangles that go.
+    goes: Vec<bool>,
+    /// The first triangle of a patch.
+    first: usize,
+}
+
+impl Crossings {
+    /// Lets a patch's triangles stay and what passes through them go, or the other way round;
+    /// whether anything of the surface changes.
+    fn settle(&mut self, surface: &Surface, rim: &[u32], own: Range<usize>) -> bool {
+        let at = |triangle: usize| self.pairs.partition_point(|p| (p[0] as usize) < triangle);
+        let pairs = &self.pairs[at(own.start)..at(own.end)];
+        let corners = |t: u32| surface.triangles[t as usize];
+        let is_rim = |t: u32| corners(t).iter().any(|p| rim.contains(p));
+        let is_sound = |&[patch, other]: &[u32; 2]| {
+            let cosine = dot(normal(surface, patch), normal(surface, other));
+            match other as usize >= self.first {
+                // Of patches that cross the first one stays.
+                true => other as usize >= own.start || self.goes[other as usize],
+                false => cosine.abs() <= ACROSS || is_rim(other),
+            }
+        };
+        let others = || {
+            let others = pairs.iter().map(|pair| pair[1]);
+            others.filter(|&t| (t as usize) < self.first)
+        };
+        let mut points = rim.iter().copied().chain(others().flat_map(corners));
+        if points.any(|p| self.taken[p as usize]) || !pairs.iter().all(is_sound) {
+            self.goes[own].fill(true);
+            return false;
+        }
+        let points = rim.iter().copied().chain(others().flat_map(corners));
+        points.for_each(|p| self.taken[p as usize] = true);
+        // A rim that runs to and fro is cut back first.
+        let is_ragged = others().any(is_rim);
+        others()
+            .filter(|&t| !is_ragged || is_rim(t))
+            .for_each(|t| self.goes[t as usize] = true);
+        self.goes[own].fill(is_ragged);
+        true
+    }
+}
+
+/// Unit normal of a triangle.
+fn normal(surface: &Surface, t: u32) -> Vec3 {
+    let [a, b, c] = surface.triangles[t as usize].map(|p| surface.points[p as usize]);
+    unit(cross(sub(b, a), sub(c, a)))
+}
+
+/// The triangles of the same part that those from `first` on touch, in pairs, ascending.
+fn crossed(surface: &Surface, first: usize) -> Result<Vec<[u32; 2]>> {
+    let own = collected(first as u32..surface.triangles.len() as u32)?;
+    let cells = Cells::around(surface, &own, 0.0);
+    let in_cell = Buckets::new(cells.count(), || {
+        let of = |&t: &u32| cells.reached_by(bounds(surface, t)).map(move |c| (c, t));
+        own.iter().flat_map(of)
+    })?;
+    let source = |t: u32| surface.source[surface.triangles[t as usize][0] as usize];
+    let mut pairs = Vec::new();
+    for other in near(surface, &own, 0.0)? {
+        let reached = cells.reached_by(bounds(surface, other));
+        for &t in reached.flat_map(|cell| in_cell.of(cell as usize)) {
+            let [a, b] = [t, other].map(|t| surface.triangles[t as usize]);
+            if t != other
+                && source(t) == source(other)
+                && overlap(bounds(surface, t), bounds(surface, other))
+                && touch(a, b, &surface.points, TOUCHING)
+            {
+                push(&mut pairs, [t, other])?;
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    Ok(pairs)
+}
+
+/// Removes the triangles that go; where these are of the surface itself, from before `first`, also
+/// the scraps that they leave.
+fn remove(surface: &mut Surface, goes: &[bool], first: usize) -> Result<()> {
+    let mut among: Vec<bool> = zeros(surface.points.len())?;
+    let sources = surface.source.iter().max().map_or(0, |s| *s as usize + 1);
+    let mut is_cut: Vec<bool> = zeros(sources)?;
+    for (triangle, _) in surface.triangles[..first]
+        .iter()
+        .zip(goes)
+        .filter(|(_, goes)| **goes)
+    {
+        triangle.iter().for_each(|&p| among[p as usize] = true);
+        is_cut[surface.source[triangle[0] as usize] as usize] = true;
+    }
+    let mut goes = goes.iter();
+    surface.triangles.retain(|_| goes.next() == Some(&false));
+    if is_cut.contains(&true) {
+        split_points_among(surface, &among)?;
+        drop_scraps(surface, |part| is_cut[part])?;
+        *surface = std::mem::take(surface).compact()?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Adds a row of squares of side 1, each cut in two; its corners are twice as many.
+    fn add_row(surface: &mut Surface, squares: u32, place: impl Fn(f64, f64) -> Vec3) {
+        let first = surface.points.len() as u32;
+        for i in 0..=squares {
+            let x = f64::from(i);
+            surface.points.extend([place(x, 0.0), place(x, 1.0)]);
+        }
+        for a in (0..squares).map(|i| first + 2 * i) {
+            surface
+                .triangles
+                .extend([[a, a + 2, a + 3], [a, a + 3, a + 1]]);
+        }
+        surface.source.resize(surface.points.len(), 0);
+    }
+
+    /// A flat row and another one after a gap, and what closes the gap; an upright row through it.
+    fn crossing_rows() -> (Surface, Patch) {
+        let mut surface = Surface::default();
+        add_row(&mut surface, 12, |x, y| [x, y, 0.0]);
+        add_row(&mut surface, 12, |x, y| [x + 14.0, y, 0.0]);
+        let rim = vec![24, 26, 27, 25];
+        let triangles = vec![[24, 26, 27], [24, 27, 25]];
+        add_row(&mut surface, 40, |x, y| {
+            [13.1, 0.9 * y + 0.05, 0.37 + x - 20.0]
+        });
+        (surface, Patch { rim, triangles })
+    }
+
+    #[test]
+    fn what_passes_through_a_hole_is_cut() {
+        let (mut surface, patch) = crossing_rows();
+        let before = surface.triangles.len();
+        assert!(close(&mut surface, &[patch]).unwrap());
+        // The patch is there, and of the upright row only the square that it crossed is not.
+        assert_eq!(surface.triangles.len(), before + 2 - 2);
+        let crossed = crossed(&surface, 0).unwrap();
+        assert!(crossed.is_empty(), "{crossed:?}");
+    }
+
+    #[test]
+    fn of_two_patches_that_cross_the_first_stays() {
+        let (mut surface, patch) = crossing_rows();
+        // The upright row has a hole, too: where the other patch is.
+        let upright: Vec<[u32; 3]> = surface.triangles.drain(48 + 2 * 19..48 + 2 * 20).collect();
+        let first = upright[0][0];
+        let rim = vec![first, first + 2, first + 3, first + 1];
+        let other = Patch {
+            rim,
+            triangles: upright.clone(),
+        };
+        let before = surface.triangles.len();
+        assert!(close(&mut surface, &[patch, other]).unwrap());
+        assert_eq!(surface.triangles.len(), before + 2);
+        assert!(!surface.triangles.contains(&upright[0]));
+        let crossed = crossed(&surface, 0).unwrap();
+        assert!(crossed.is_empty(), "{crossed:?}");
+    }
+
+    #[test]
+    fn what_lies_in_a_hole_along_it_keeps_it_open() {
+        let (mut surface, patch) = crossing_rows();
+        surface.triangles.truncate(48);
+        add_row(&mut surface, 20, |x, y| {
+            [13.0 - 10.0 + x, y + 0.1, 0.2 * (x - 9.8)]
+        });
+        let before = surface.triangles.clone();
+        assert!(!close(&mut surface, &[patch]).unwrap());
+        assert_eq!(surface.triangles, before);
+    }
+}
