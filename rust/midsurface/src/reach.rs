@@ -31,6 +31,8 @@ const OPPOSITE: f64 = -0.9;
 const POINT_ROUNDS: usize = 2;
 const WAY_ROUNDS: usize = 12;
 const LENGTH_ROUNDS: usize = 3;
+/// A rim is led on this share of the radius in which its ways ahead turn.
+const ROOM: f64 = 0.85;
 /// So many points along a rim take over what those beside them see.
 const TAKEN_OVER: usize = 3;
 /// Steps in which the way is tried for being in the label, work units.
@@ -214,14 +216,34 @@ fn lengths(
             }
         }
     }
-    let mut lengths = collected(known.iter().map(|known| known.unwrap_or(0.0)))?;
+    let rooms = rooms(blind)?;
+    let length = |(known, room): (&Option<f64>, &f64)| known.unwrap_or(0.0).min(*room);
+    let mut lengths = collected(known.iter().zip(&rooms).map(length))?;
     for _ in 0..LENGTH_ROUNDS {
         lengths = averaged(blind, &lengths, |[a, b, c]| 0.25 * (a + c) + 0.5 * b)?;
     }
-    for (length, seen) in lengths.iter_mut().zip(&seen) {
-        *length = seen.map_or(*length, |seen| length.min((seen - APART).max(0.0)));
+    for ((length, seen), room) in lengths.iter_mut().zip(&seen).zip(rooms) {
+        let most = seen.map_or(room, |seen| room.min((seen - APART).max(0.0)));
+        *length = length.min(most);
     }
     Ok(lengths)
+}
+
+/// How far each point of the blind rims may go: where the ways ahead turn along a rim the strip
+/// would fold, or spread into a fan.
+fn rooms(blind: &[Blind]) -> Result<Vec<f64>> {
+    let mut rooms = filled(f64::INFINITY, blind.len())?;
+    for (b, own) in blind.iter().enumerate() {
+        let Some(after) = own.beside[1] else { continue };
+        let turn = length(sub(blind[after].way, own.way));
+        if turn > 0.0 {
+            let room = ROOM * length(sub(blind[after].place, own.place)) / turn;
+            for point in [b, after] {
+                rooms[point] = rooms[point].min(room);
+            }
+        }
+    }
+    Ok(rooms)
 }
 
 /// How far ahead each point of the blind rims sees another sheet.
