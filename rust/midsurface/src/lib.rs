@@ -18,7 +18,8 @@
 //! | profile | mask → the mask smoothed as wide as it is thick | `profile.rs` |
 //! | sheets | profile → normal and offset of the sheet at every voxel near it | `crest.rs`, `extension.rs`, `settle.rs` |
 //! | contour | sheets → a surface through them, cut at the label's rims | `contour.rs`, `rim.rs`, `trim.rs`, `scraps.rs` |
-//! | midway | surface → surface without false holes, midway between both faces, led on to where sheets meet | `holes.rs`, `midway.rs`, `fairing.rs`, `reach.rs` |
+//! | holes | surface → surface without false holes, led on beyond the border of the volume for the while | `holes.rs`, `beyond.rs` |
+//! | midway | surface → surface midway between both faces, led on to where sheets meet | `midway.rs`, `look.rs`, `fairing.rs`, `reach.rs` |
 //! | mesh | triangles → nearly equilateral ones, no terraces, no self-intersections | `remesh`, `terraces.rs`, `self_intersections.rs` |
 //!
 //! The polyline zipper is the method of Boneš et al., "MidSurfer: A Parameter-Free Approach for
@@ -43,6 +44,7 @@
 
 mod batches;
 mod bending;
+mod beyond;
 mod block;
 mod border;
 mod bricks;
@@ -70,6 +72,7 @@ mod holes;
 #[cfg(feature = "inject-panics")]
 pub mod injected_panics;
 mod interpolation;
+mod look;
 mod manifold;
 mod mask;
 mod mesh;
@@ -82,6 +85,7 @@ mod quality;
 mod ray;
 mod reach;
 mod reading;
+mod region;
 mod remesh;
 mod resample;
 mod ridge;

@@ -2,7 +2,7 @@
 //!
 //! A profile has its crest midway only where the sheet is flat and as thick on both sides. The faces
 //! themselves have no such bias: from each point both are looked for along the normal
-//! (`thickness.rs`), and half the difference of their distances is how far the point is off. Faces
+//! (`look.rs`), and half the difference of their distances is how far the point is off. Faces
 //! are known to about a voxel, so the figure is averaged over the surface around, which, being a
 //! number along the normals, neither shrinks nor bends what is curved. Where sheets meet and none of
 //! the points around sees both faces, the surface is made fair (`fairing.rs`).
@@ -17,19 +17,16 @@ use crate::buckets::{self, Buckets};
 use crate::error::{collected, zeros, Result};
 use crate::execution::Execution;
 use crate::fairing::{self, fair};
-use crate::grid::{along, dot, last_voxel, Vec3};
+use crate::grid::{along, dot, last_voxel, length, unit, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
+use crate::look::{look, mean, Seen, WHOLE};
 use crate::manifold::Surface;
 use crate::mask::Mask;
 use crate::normals::{average_normals, normal_of_fan};
-use crate::ray::Inside;
+use crate::ray::{Inside, Ray, Reach};
 use crate::thickness::View;
 
-/// Sheet fraction below which the faces seen may be a rim's.
-const INSIDE: f64 = 0.7;
-/// Below this sheet fraction a rim is near, with few points to average over.
-const WHOLE: f64 = 0.95;
 /// Where the border of the volume holds more than this share of a step along the normal back, what
 /// is left would be a long way along the border: the point stays.
 const STEEP: f64 = 0.5;
@@ -37,6 +34,8 @@ const STEEP: f64 = 0.5;
 /// this share of that away.
 const BEFORE: f64 = 4.0;
 const ACROSS: f64 = 0.5;
+/// A sheet leaves the volume upright where its normal is parallel to the border but for this cosine.
+const UPRIGHT: f64 = 0.95;
 /// Times that points are moved, with normals of their own each time: the rounds of averaging over
 /// neighbouring points, whose number is the variance in about two squared edges of the contour; by
 /// how much a point may be off, work units; and that one in so many points looks for the faces,
@@ -60,9 +59,6 @@ pub(crate) const PASSES: usize = {
     let rounds = MOVES[0].0 + MOVES[1].0 + MOVES[2].0 + MOVES[3].0;
     buckets::PASSES + MOVES.len() * (2 + NORMAL_ROUNDS) + rounds + fairing::PASSES
 };
-
-/// How far off each point is, and how much of that was seen there.
-type Seen = [f32; 2];
 
 /// What is known of the label where a surface is moved.
 pub(crate) struct Label<'a> {
@@ -90,12 +86,42 @@ impl Label<'_> {
         View::new(&Inside { distance, mask }, point, normal)
     }
 
-    /// How far along the normal the middle is from a point of a part, where both faces are seen no
-    /// farther off than `most`.
-    fn to_middle(&self, part: u32, point: Vec3, normal: Vec3, most: f64) -> Option<f64> {
-        let view = self.view(part, point, normal);
-        let off = view.to_middle.filter(|off| off.abs() <= most)?;
-        sees_faces(&self.distance(part), point, &view, off).then_some(off)
+    /// How far the label's faces are along the normal and against it from a point of a part, infinitely
+    /// where the border of the volume comes first; `None` where the wall of a rim does.
+    pub fn faces(&self, part: u32, point: Vec3, normal: Vec3) -> Option<[f64; 2]> {
+        let (distance, mask) = (self.distance(part), self.mask);
+        let label = Inside { distance, mask };
+        let face = |direction: Vec3| match Ray::new(&label, point, direction).reach() {
+            Reach::Border => Some(f64::INFINITY),
+            Reach::Face(reach) => {
+                // Just before a ray meets a face the outside is about as near.
+                let before = reach.min(BEFORE);
+                let there = along(point, reach - before, direction);
+                (label.distance.linear(there) >= ACROSS * before).then_some(reach)
+            }
+        };
+        let both = |way: Vec3| Some([face(way)?, face(way.map(|v| -v))?]);
+        let [ahead, behind] = both(normal)?;
+        // Hardly leaning, a sheet is as good as across a line within the border.
+        let nearest = ahead.min(behind);
+        if nearest.is_finite() && ahead.max(behind).is_infinite() {
+            let level = self.level(point, normal, nearest);
+            let cosine = length(level);
+            if cosine > UPRIGHT {
+                let found = both(unit(level))?.map(|reach| cosine * reach);
+                if found.iter().all(|reach| reach.is_finite()) {
+                    return Some(found);
+                }
+            }
+        }
+        Some([ahead, behind])
+    }
+
+    /// The part of a normal that is parallel to the borders that a way of such a length along it gets to.
+    fn level(&self, p: Vec3, normal: Vec3, way: f64) -> Vec3 {
+        let last = self.last();
+        let is_near = |a: usize| p[a].min(last[a] - p[a]) <= way * normal[a].abs();
+        std::array::from_fn(|a| if is_near(a) { 0.0 } else { normal[a] })
     }
 
     /// Whether a point lies on the border of the volume, for each axis.
@@ -106,12 +132,18 @@ impl Label<'_> {
 
     /// Whether a point lies in the volume, its border included.
     pub fn within_volume(&self, p: Vec3) -> bool {
+        self.depth(p) >= 0.0
+    }
+
+    /// How far a point is from the border of the volume; negative beyond it.
+    pub fn depth(&self, p: Vec3) -> f64 {
         let last = self.last();
-        (0..3).all(|a| (0.0..=last[a]).contains(&p[a]))
+        let depth = |a: usize| p[a].min(last[a] - p[a]);
+        depth(0).min(depth(1)).min(depth(2))
     }
 
     /// The last voxel of the volume, work coordinates.
-    fn last(&self) -> Vec3 {
+    pub fn last(&self) -> Vec3 {
         let directory = self.batch.directories.first();
         directory.map_or([0.0; 3], |d| last_voxel(d.dimensions, self.h))
     }
@@ -131,10 +163,12 @@ pub(crate) fn move_closer(
         for (i, out) in out.iter_mut().enumerate() {
             let p = PIECE * piece + i;
             let (point, normal) = (surface.points[p], normals[p]);
-            let off = label.to_middle(surface.source[p], point, normal, BUMP);
-            *out = off.map_or(point, |off| {
-                within_volume(point, normal, OWN_SHARE * off, last)
-            });
+            let faces = label.faces(surface.source[p], point, normal);
+            let off = faces.map(|[ahead, behind]| 0.5 * (ahead - behind));
+            *out = match off.filter(|off| off.abs() <= BUMP) {
+                Some(off) => within_volume(point, normal, OWN_SHARE * off, last),
+                None => point,
+            };
         }
     })?;
     surface.points = moved;
@@ -162,10 +196,9 @@ pub(crate) fn move_midway(
     }
     let blind = blind(surface, fraction, &seen, (fans, &neighbours))?;
     let off = fair(surface, &normals, &blind, (fans, &neighbours), execution)?;
-    let last = label.last();
     for (p, off) in off {
         let p = p as usize;
-        surface.points[p] = within_volume(surface.points[p], normals[p], off, last);
+        surface.points[p] = along(surface.points[p], off, normals[p]);
     }
     Ok(())
 }
@@ -211,6 +244,7 @@ fn move_once(
         label,
         (surface, fraction),
         &normals,
+        fans,
         (most, one_in),
         execution,
     )?;
@@ -218,65 +252,18 @@ fn move_once(
     for _ in 0..rounds {
         execution.fill(&mut averaged, PIECE, |piece, out| {
             for (i, out) in out.iter_mut().enumerate() {
-                *out = mean(&seen, neighbours, PIECE * piece + i);
+                let around = neighbours.of(PIECE * piece + i).iter();
+                *out = mean(seen[PIECE * piece + i], around.map(|&q| seen[q as usize]));
             }
         })?;
         std::mem::swap(&mut averaged, &mut seen);
     }
-    let last = label.last();
     for ((p, n), [off, weight]) in surface.points.iter_mut().zip(&normals).zip(&seen) {
         if *weight > 1e-3 {
-            *p = within_volume(*p, *n, f64::from(off / weight), last);
+            *p = along(*p, f64::from(off / weight), *n);
         }
     }
     Ok((normals, seen))
-}
-
-/// How far off the points are that look: up to `most`, and one in so many where no rim is near.
-fn look(
-    label: &Label,
-    (surface, fraction): (&Surface, &[f64]),
-    normals: &[Vec3],
-    (most, one_in): (f64, u8),
-    execution: &mut Execution,
-) -> Result<Vec<Seen>> {
-    let mut seen: Vec<Seen> = zeros(surface.points.len())?;
-    execution.fill(&mut seen, PIECE, |piece, out| {
-        for (i, out) in out.iter_mut().enumerate() {
-            let p = PIECE * piece + i;
-            let point = surface.points[p];
-            // One that looks in place of others counts for them too.
-            let stands_for = if fraction[p] < WHOLE { 1 } else { one_in };
-            if fraction[p] < INSIDE || !is_one_in(stands_for, point, label.h) {
-                continue;
-            }
-            if let Some(off) = label.to_middle(surface.source[p], point, normals[p], most) {
-                let weight = f32::from(stands_for);
-                *out = [weight * off as f32, weight];
-            }
-        }
-    })?;
-    Ok(seen)
-}
-
-/// Whether a point is one in so many, which its voxel alone decides: by a multiplicative hash (Knuth),
-/// since anything regular would leave out whole sheets of one direction.
-fn is_one_in(one_in: u8, p: Vec3, h: Vec3) -> bool {
-    let hash = (0..3).fold(0u64, |hash, a| {
-        (hash ^ (p[a] / h[a]) as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
-    });
-    (hash >> 32) % u64::from(one_in) == 0
-}
-
-/// Whether both rays end at faces of the sheet, not at the wall of its rim: just before a ray meets
-/// a face, the outside is about as near as that face.
-fn sees_faces(distance: &Sampler, p: Vec3, view: &View, off: f64) -> bool {
-    [1.0, -1.0].into_iter().all(|side| {
-        let reach = 0.5 * view.thickness + side * off;
-        let before = reach.min(BEFORE);
-        let there = along(p, side * (reach - before), view.normal);
-        distance.linear(there) >= ACROSS * before
-    })
 }
 
 /// Moves a point along its normal; one on the border of the volume stays on the border.
@@ -289,15 +276,4 @@ fn within_volume(p: Vec3, n: Vec3, off: f64, last: Vec3) -> Vec3 {
     }
     let moved = along(p, off / share, way);
     std::array::from_fn(|a| moved[a].clamp(0.0, last[a]))
-}
-
-/// Mean over a point and its neighbours.
-fn mean(seen: &[Seen], neighbours: &Buckets<u32>, p: usize) -> Seen {
-    let neighbours = neighbours.of(p);
-    let [off, weight] = neighbours.iter().fold(seen[p], |[off, weight], &q| {
-        let [next_off, next_weight] = seen[q as usize];
-        [off + next_off, weight + next_weight]
-    });
-    let count = (1 + neighbours.len()) as f32;
-    [off / count, weight / count]
 }

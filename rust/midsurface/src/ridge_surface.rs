@@ -4,19 +4,21 @@
 //! (`profile.rs`), the sheets at its crest (`crest.rs`), how they bend (`bending.rs`) and on to
 //! beyond the rims (`extension.rs`), a surface through them (`contour.rs`), wound the same way
 //! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
-//! (`weld.rs`), closed where it has holes within the label (`holes.rs`), moved midway between both
-//! faces (`midway.rs`), made fair where these are not seen (`fairing.rs`), led on to where sheets meet
-//! (`reach.rs`), remeshed (`remesh`), rid of terraces (`terraces.rs`), moved a last little step
-//! (`midway.rs`) and rid of self-intersections (`self_intersections.rs`). How much of the progress a
-//! stage is given is how long it took on the membranes of real cells.
+//! (`weld.rs`), closed where it has holes within the label (`holes.rs`), led on beyond the border of
+//! the volume (`beyond.rs`), moved midway between both faces (`midway.rs`, `look.rs`), made fair where
+//! these are not seen (`fairing.rs`), cut at the border, led on to where sheets meet (`reach.rs`),
+//! remeshed (`remesh`), rid of terraces (`terraces.rs`), moved a last little step (`midway.rs`) and rid
+//! of self-intersections (`self_intersections.rs`). How much of the progress a stage is given is how
+//! long it took on the membranes of real cells.
 
 use crate::bending;
+use crate::beyond::{cut_at_border, lead_beyond};
 use crate::bricks::Batch;
 use crate::components::Part;
 use crate::contour;
 use crate::crest::{self, core_sheets};
 use crate::distance;
-use crate::error::{collected, zeros, Result};
+use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
 use crate::extension;
 use crate::grid::{last_voxel, Grid, Vec3};
@@ -79,8 +81,8 @@ pub(crate) fn ridge_surface(
     let batch = &Batch::new(parts, grid.dimensions)?;
     let distance = distance::distance(batch, h, execution)?;
     let sheets = find_sheets(batch, &distance, h, execution)?;
-    let (mut surface, fraction) = cut_surface(batch, sheets, &distance, h, execution)?;
-    let passes = mask::PASSES + holes::PASSES + 1 + midway::PASSES + reach::PASSES;
+    let (surface, fraction) = cut_surface(batch, sheets, &distance, h, execution)?;
+    let passes = mask::PASSES + holes::PASSES + 2 + midway::PASSES + reach::PASSES;
     execution.stage("Moving midway", 0.49, 0.65, passes)?;
     let mask = Mask::new(batch, &distance, execution)?;
     let label = Label {
@@ -89,11 +91,7 @@ pub(crate) fn ridge_surface(
         mask: &mask,
         h,
     };
-    let fans = close_holes(&label, &mut surface, &fraction, execution)?;
-    let fraction = values(batch, &surface, &fraction, h, execution)?;
-    move_midway(&label, &mut surface, &fraction, &fans, execution)?;
-    reach(&label, &mut surface, &fraction, &fans, execution)?;
-    drop((fans, fraction));
+    let mut surface = moved_midway(&label, surface, &fraction, execution)?;
     turn_outward(&surface.points, &mut surface.triangles)?;
     execution.stage("Remeshing", 0.65, 0.94, 1)?;
     let wanted = match edge_length {
@@ -255,6 +253,31 @@ fn cut_surface(
     weld(&mut surface, execution)?;
     execution.pass_done()?;
     Ok((surface.compact()?, fraction))
+}
+
+/// Closes a surface's false holes, moves it midway, up to the border of the volume, and leads it on to where sheets meet;
+/// `field` is the sheet fraction at the voxels.
+fn moved_midway(
+    label: &Label,
+    mut surface: Surface,
+    field: &[f32],
+    execution: &mut Execution,
+) -> Result<Surface> {
+    let (batch, h) = (label.batch, label.h);
+    let mut fans = close_holes(label, &mut surface, field, execution)?;
+    let mut fraction = values(batch, &surface, field, h, execution)?;
+    for from in lead_beyond(&mut surface, &fans, label.last())? {
+        let of_point = fraction[from as usize];
+        push(&mut fraction, of_point)?;
+    }
+    fans = Fans::new(&surface.triangles, surface.points.len())?;
+    move_midway(label, &mut surface, &fraction, &fans, execution)?;
+    cut_at_border(&mut surface, label.last())?;
+    let mut surface = surface.compact()?;
+    fraction = values(batch, &surface, field, h, execution)?;
+    fans = Fans::new(&surface.triangles, surface.points.len())?;
+    reach(label, &mut surface, &fraction, &fans, execution)?;
+    Ok(surface)
 }
 
 /// The value of a field at every point of a surface, whose points have their parts as sources.

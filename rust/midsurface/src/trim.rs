@@ -19,8 +19,10 @@ const HOLE: f64 = 0.25;
 const SHEET: f64 = 0.75;
 /// Points this near to the cut, in the length of the edge that it crosses, are moved onto it.
 const SNAP: f32 = 0.3;
-/// A cut keeps this share of an edge away from its ends: no triangle becomes a point.
+/// Where hysteresis overruled the field a cut is this share of an edge away from its end.
 const CLEAR: f64 = 0.02;
+/// and elsewhere by this share at least.
+const LEAST: f64 = 1e-7;
 
 /// Which side of the cut a point is on.
 #[derive(Clone, Copy, PartialEq)]
@@ -36,6 +38,11 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
     if above.iter().all(|&a| a) {
         return Ok(());
     }
+    cut(surface, fraction, RIM, &above)
+}
+
+/// Cuts off the points that are not `above`, where `field`, given at the points, has this value.
+pub(crate) fn cut(surface: &mut Surface, field: &[f64], value: f64, above: &[bool]) -> Result<()> {
     let triangles = std::mem::take(&mut surface.triangles);
     // Only these are cut; those with the same edges are among them.
     let mixed = |t: &[u32; 3]| t.iter().any(|&p| above[p as usize] != above[t[0] as usize]);
@@ -44,7 +51,7 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
     let edges = Edges::of_triangles(&triangles, &mixed, surface.points.len())?;
     let side = |a: &bool| if *a { Side::Kept } else { Side::Cut };
     let mut side = collected(above.iter().map(side))?;
-    snap(surface, fraction, &edges, &mut side)?;
+    snap(surface, (field, value), &edges, &mut side)?;
     let mut cut: Vec<u32> = zeros(3 * triangles.len())?;
     for (a, b, group) in edges.groups() {
         let [p, q] = [a, b].map(|p| p as usize);
@@ -54,7 +61,7 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
         ) {
             let new = surface.points.len() as u32;
             let (from, to) = (surface.points[p], surface.points[q]);
-            let t = crossing(fraction[p], fraction[q]);
+            let t = crossing(field[p], field[q], value);
             push(&mut surface.points, along(from, t, sub(to, from)))?;
             let source = surface.source[p];
             push(&mut surface.source, source)?;
@@ -91,16 +98,26 @@ pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
     split_points_among(surface, &at_cut)
 }
 
-/// Where between two points the fraction is that of a rim; next to the first one's end where
-/// hysteresis overruled the fraction.
-fn crossing(from: f64, to: f64) -> f64 {
-    let t = (RIM - from) / (to - from);
+/// Where between two points the field has this value; next to the first one's end where hysteresis
+/// overruled the field. Never quite at an end: no triangle becomes a point.
+fn crossing(from: f64, to: f64, value: f64) -> f64 {
+    let t = (value - from) / (to - from);
+    let clear = if (0.0..=1.0).contains(&t) {
+        LEAST
+    } else {
+        CLEAR
+    };
     let t = if t.is_finite() { t } else { 0.5 };
-    t.clamp(CLEAR, 1.0 - CLEAR)
+    t.clamp(clear, 1.0 - clear)
 }
 
 /// Moves points that the cut passes close by onto it, so that it leaves no slivers.
-fn snap(surface: &mut Surface, fraction: &[f64], edges: &Edges, side: &mut [Side]) -> Result<()> {
+fn snap(
+    surface: &mut Surface,
+    (field, value): (&[f64], f64),
+    edges: &Edges,
+    side: &mut [Side],
+) -> Result<()> {
     // For each point the nearest crossing on its edges: share of the edge, and the other end.
     let mut nearest: Vec<(f32, u32)> = zeros(side.len())?;
     for (a, b, _) in edges.groups() {
@@ -108,7 +125,7 @@ fn snap(surface: &mut Surface, fraction: &[f64], edges: &Edges, side: &mut [Side
         if side[p] == side[q] {
             continue;
         }
-        let t = crossing(fraction[p], fraction[q]) as f32;
+        let t = crossing(field[p], field[q], value) as f32;
         for (own, share, other) in [(p, t, b), (q, 1.0 - t, a)] {
             if share < SNAP && (nearest[own].0 == 0.0 || share < nearest[own].0) {
                 nearest[own] = (share, other);
