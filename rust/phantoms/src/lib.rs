@@ -23,6 +23,7 @@ mod topology;
 mod trials;
 mod triangle_shape;
 mod triangle_tree;
+mod upright;
 mod vector;
 
 pub use accuracy::{Accuracy, Coverage, INSIDE};
@@ -41,4 +42,5 @@ pub use topology::{closed_inward, connectivity, Connectivity};
 pub use trials::{trials, Grades, Limits, Trial};
 pub use triangle_shape::{shapes, Shapes};
 pub use triangle_tree::distance_to_triangle;
+pub use upright::{leaning_sheet, upright_tube};
 pub use vector::{leaning, Vec3};
