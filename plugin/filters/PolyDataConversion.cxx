@@ -5,6 +5,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkLongLongArray.h"
@@ -117,6 +118,9 @@ void CopyPolylines(const midsurface_polyline_arrays& polylines, vtkPolyData* out
   cells->AddArray(CopyArray<vtkLongLongArray>("Label", polylines.labels, count));
   cells->AddArray(CopyArray<vtkLongLongArray>("Component", polylines.components, count));
   cells->AddArray(CopyArray<vtkLongLongArray>("Slice", polylines.slices, count));
+  // Field data stay with the lines whichever filters they go through.
+  output->GetFieldData()->AddArray(
+    CopyArray<vtkDoubleArray>("VoxelSteps", polylines.voxel_steps, 9));
 }
 
 //------------------------------------------------------------------------------
@@ -137,6 +141,17 @@ PolylineInput::PolylineInput(vtkPolyData* input, bool mayBeEmpty)
   this->View.points = Coordinates(input, this->Points);
   this->View.thickness = PointValues(input, "Thickness", this->Thickness);
   this->View.border_distance = PointValues(input, "BorderDistance", this->BorderDistance);
+
+  vtkDataArray* steps = input->GetFieldData()->GetArray("VoxelSteps");
+  if (steps && steps->GetNumberOfValues() == 9)
+  {
+    const int components = steps->GetNumberOfComponents();
+    for (int i = 0; i < 9; ++i)
+    {
+      this->VoxelSteps[i] = steps->GetComponent(i / components, i % components);
+    }
+    this->View.voxel_steps = this->VoxelSteps;
+  }
 
   this->Lines->ShallowCopy(input->GetLines());
   if (!this->Lines->IsStorage64Bit() && !this->Lines->ConvertTo64BitStorage())

@@ -21,7 +21,7 @@ void CopyMeshPiece(const midsurface_mesh_arrays& mesh, vtkPolyData* output);
 
 /**
  * Copies polylines, once: points `Thickness` and `BorderDistance`, cells `Label`, `Component` and
- * `Slice`.
+ * `Slice`, and field data `VoxelSteps`.
  */
 void CopyPolylines(const midsurface_polyline_arrays& polylines, vtkPolyData* output);
 
@@ -45,6 +45,7 @@ private:
 
   vtkPolyData* Input;
   midsurface_polyline_arrays View{};
+  double VoxelSteps[9] = {};
   vtkNew<vtkCellArray> Lines;
   vtkSmartPointer<vtkDataArray> Points;
   vtkSmartPointer<vtkDataArray> Thickness;

@@ -12,6 +12,8 @@
  *   units. vtkPolylineZipper moves no point over that border.
  * - Cell arrays `Label` and `Component`: as in vtkMidSurfaceFilter.
  * - Cell array `Slice`: the index of the slice along z, in the image's extent.
+ * - Field data array `VoxelSteps`: a matrix of 9 values, row by row, whose columns are the
+ *   steps from voxel to voxel along the image's axes.
  */
 
 #ifndef vtkMidPolylines_h

@@ -117,6 +117,7 @@ struct drawing
   int64_t labels[LINES];
   int64_t components[LINES];
   int64_t slices[LINES];
+  double voxel_steps[9];
 };
 
 static const struct drawing good_drawing = {
@@ -129,6 +130,7 @@ static const struct drawing good_drawing = {
   .labels = { 1, 1, -4 },
   .components = { 0, 0, 9 },
   .slices = { 0, 1, 1 },
+  .voxel_steps = { 0, 1, 0, 1, 0, 0, 0, 0, -1 },
 };
 
 static midsurface_polyline_arrays arrays_of_drawing(const struct drawing* drawing)
@@ -145,6 +147,7 @@ static midsurface_polyline_arrays arrays_of_drawing(const struct drawing* drawin
     .labels = drawing->labels,
     .components = drawing->components,
     .slices = drawing->slices,
+    .voxel_steps = drawing->voxel_steps,
   };
   return arrays;
 }
@@ -170,6 +173,7 @@ static void arrays_are_copied_as_they_are(void)
     CHECK(memcmp(out.labels, good_drawing.labels, sizeof good_drawing.labels) == 0);
     CHECK(memcmp(out.components, good_drawing.components, sizeof good_drawing.components) == 0);
     CHECK(memcmp(out.slices, good_drawing.slices, sizeof good_drawing.slices) == 0);
+    CHECK(memcmp(out.voxel_steps, good_drawing.voxel_steps, sizeof good_drawing.voxel_steps) == 0);
     for (int entry = 0; entry < ENTRIES; entry++)
     {
       const int64_t from = good_drawing.connectivity[entry];
@@ -190,6 +194,7 @@ static void arrays_that_may_be_null_have_defaults(void)
   arrays.border_distance = NULL;
   arrays.labels = NULL;
   arrays.components = NULL;
+  arrays.voxel_steps = NULL;
   midsurface_polylines* lines = drawn(&arrays);
   const midsurface_polyline_arrays out = arrays_of_lines(lines);
   for (size_t l = 0; l < out.line_count; l++)
@@ -201,6 +206,10 @@ static void arrays_that_may_be_null_have_defaults(void)
   {
     CHECK(out.thickness[p] == 0.0F);
     CHECK(isinf(out.border_distance[p]));
+  }
+  for (int i = 0; i < 9; i++)
+  {
+    CHECK(out.voxel_steps[i] == 0.0);
   }
   CHECK(out.line_count == LINES && out.point_count == POINTS);
   midsurface_polylines_free(lines);

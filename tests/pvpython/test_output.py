@@ -111,6 +111,15 @@ class Stages(FilterTest):
             self.assertGreater(mesh.GetNumberOfCells(), 0)
             self.assert_same(whole, arrays(mesh))
 
+    def test_an_edge_length_gives_the_zipper_other_triangles(self):
+        data = image(tube())
+        whole = self.extract(data, Method="Polyline zipper")
+        coarse = self.extract(data, Method="Polyline zipper", EdgeLength=4)
+        self.assertLess(2 * len(coarse["cell Label"]), len(whole["cell Label"]))
+        self.assertEqual(set(coarse["cell Label"]), {1})
+        self.assertEqual(set(coarse["cell Component"]), {0})
+        self.assertEqual(len(coarse["point Thickness"]), len(coarse["points"]))
+
     def test_polylines(self):
         lines, messages = update(simple.MidPolylines(Input=source(image(tube()))))
         self.assertEqual(messages.errors + messages.warnings, [])
@@ -123,6 +132,8 @@ class Stages(FilterTest):
         self.assertEqual(len(found["point Thickness"]), len(found["points"]))
         inside = np.minimum(found["points"], [30, 30, 11] - found["points"])[:, :2].min(axis=1)
         self.assertLess(np.abs(found["point BorderDistance"] - inside).max(), 1e-5)
+        steps = lines.GetFieldData().GetArray("VoxelSteps")
+        self.assertEqual([steps.GetValue(i) for i in range(9)], [1, 0, 0, 0, 1, 0, 0, 0, 1])
         for first, end in zip(found["lines offsets"], found["lines offsets"][1:]):
             line = found["lines"][first:end]
             self.assertEqual(line[0], line[-1], "a tube is cut in closed lines")

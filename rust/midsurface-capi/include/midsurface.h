@@ -412,6 +412,12 @@ typedef struct midsurface_polyline_arrays {
    * joined within a slice and to the slices next to it.
    */
   const int64_t *slices;
+  /**
+   * Row-major matrix whose columns are the steps from voxel to voxel along the volume's axes, in
+   * the unit of the coordinates: 9 values, finite. May be NULL on input, and 0: unknown, and
+   * terraces of voxels are flattened less.
+   */
+  const double *voxel_steps;
 } midsurface_polyline_arrays;
 
 /**

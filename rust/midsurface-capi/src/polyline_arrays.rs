@@ -39,6 +39,10 @@ pub struct midsurface_polyline_arrays {
     /// Slice of each line, its index along z in the image's extent: line_count values. Lines are
     /// joined within a slice and to the slices next to it.
     pub slices: *const i64,
+    /// Row-major matrix whose columns are the steps from voxel to voxel along the volume's axes, in
+    /// the unit of the coordinates: 9 values, finite. May be NULL on input, and 0: unknown, and
+    /// terraces of voxels are flattened less.
+    pub voxel_steps: *const f64,
 }
 
 impl midsurface_polyline_arrays {
@@ -54,6 +58,7 @@ impl midsurface_polyline_arrays {
         labels: std::ptr::null(),
         components: std::ptr::null(),
         slices: std::ptr::null(),
+        voxel_steps: std::ptr::null(),
     };
 }
 
@@ -67,6 +72,7 @@ struct Slices<'a> {
     labels: Option<&'a [i64]>,
     components: Option<&'a [i64]>,
     slices: &'a [i64],
+    voxel_steps: Option<&'a [[f64; 3]]>,
 }
 
 /// The core's polylines, copied from the caller's arrays.
@@ -109,6 +115,7 @@ impl Slices<'_> {
                 labels: optional_slice(arrays.labels, lines, "arrays.labels")?,
                 components: optional_slice(arrays.components, lines, "arrays.components")?,
                 slices: slice(arrays.slices, lines, "arrays.slices")?,
+                voxel_steps: optional_slice(arrays.voxel_steps.cast(), 3, "arrays.voxel_steps")?,
             })
         }
     }
@@ -150,6 +157,10 @@ impl Slices<'_> {
             thickness: collected(end, points().map(thickness))?,
             border_distance: collected(end, points().map(border))?,
             lines: polylines,
+            voxel_steps: match self.voxel_steps {
+                Some(&[x, y, z]) => [x, y, z],
+                _ => [[0.0; 3]; 3],
+            },
         })
     }
 

@@ -71,6 +71,7 @@ impl midsurface_polylines {
             labels: address(&self.labels),
             components: address(&self.components),
             slices: address(&self.slices),
+            voxel_steps: address(self.polylines.voxel_steps.as_flattened()),
         }
     }
 }

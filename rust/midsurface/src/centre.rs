@@ -18,7 +18,8 @@ const UNCERTAIN: f64 = 0.06;
 /// No point moves by more, work units.
 const MOST: f64 = 1.5;
 /// Standard deviation of the average, in points, within the volume and at its border, where the
-/// error fades over a few voxels.
+/// error fades over a few voxels: over more points, the smaller the angle at which the line comes near
+/// the border, but no more than within the volume.
 const SIGMA: f64 = 4.0;
 const SIGMA_AT_BORDER: f64 = 1.0;
 /// Sheet fraction below which the faces seen may be the rim's.
@@ -76,12 +77,16 @@ pub(crate) fn centre(slice: &Slice, line: &mut Trace, views: &[Option<View>], wh
         .enumerate()
         .map(|(i, (view, &p))| needed_move(slice, view.as_ref()?, slice.clamp(p), is_end(i)))
         .collect();
+    let tangents: Vec<Point> = (0..line.points.len()).map(|i| line.tangent(i)).collect();
     for (i, view) in views.iter().enumerate() {
-        let at_border = view.as_ref().is_some_and(|view| view.at_border);
+        let at_border = view.as_ref().is_some_and(View::at_border);
         if which == Which::AtBorder && !at_border {
             continue;
         }
-        let sigma = if at_border { SIGMA_AT_BORDER } else { SIGMA };
+        let sigma = match view {
+            Some(view) if at_border => sigma_at_border(&tangents[i], view.near_border),
+            _ => SIGMA,
+        };
         // In a corner of the volume no line sees both faces: what its neighbours need is taken.
         let missing = at_border && moves[i].is_none();
         if let Some(mean) = average(
@@ -99,10 +104,23 @@ pub(crate) fn centre(slice: &Slice, line: &mut Trace, views: &[Option<View>], wh
     }
 }
 
+/// Standard deviation of the average at the borders that are near, for a line with this tangent.
+fn sigma_at_border(tangent: &Point, near_border: [bool; 3]) -> f64 {
+    let towards = |a: usize| {
+        if near_border[a] {
+            tangent[a].abs()
+        } else {
+            0.0
+        }
+    };
+    let fastest = towards(0).max(towards(1));
+    (SIGMA_AT_BORDER / fastest.max(SIGMA_AT_BORDER / SIGMA)).min(SIGMA)
+}
+
 /// The move within the slice that brings a point to the middle; normals have no sign of their own,
 /// so that moves can be averaged and offsets cannot.
 fn needed_move(slice: &Slice, view: &View, p: Point, is_end: bool) -> Option<Point> {
-    let least = if view.at_border {
+    let least = if view.at_border() {
         LEAST_AT_BORDER
     } else {
         LEAST_THICKNESS

@@ -86,7 +86,7 @@ pub fn zip_polylines_piece(
         polylines.check()?;
         check_held_by_one(polylines, team)?;
         let mut findings = Findings::default();
-        let mesh = zip(polylines, &mut findings, execution)?;
+        let mesh = zip(polylines, &mut findings, 1.0, execution)?;
         Ok((count_in(mesh, team)?, findings))
     })
 }

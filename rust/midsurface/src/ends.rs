@@ -8,8 +8,9 @@ use crate::resample::distance;
 use crate::slice::{Point, Slice};
 use crate::trace::Trace;
 
-/// No line is carried on farther, in distances of its points.
-const FARTHEST: f64 = 3.0;
+/// No line is carried on farther, in distances of its points: by this much a line half a voxel off the
+/// middle misses a border that it meets at 3°.
+const FARTHEST: f64 = 8.0;
 /// A last edge is no shorter, and a new point no nearer, in distances of the points.
 const SHORTEST: f64 = 0.3;
 const NEAREST: f64 = 0.75;
@@ -77,10 +78,13 @@ fn put_last_on_border(slice: &Slice, line: &mut Line, end: Point, spacing: f64) 
         return;
     }
     let met = slice.way_out(from, beyond);
-    if distance(from, met) < NEAREST * spacing {
+    let count = (distance(from, met) / spacing + 1.0 - NEAREST) as usize;
+    if count == 0 {
         points[last] = met;
-    } else {
-        points.push(met);
+    }
+    for k in 1..=count {
+        let share = k as f64 / count as f64;
+        points.push([0, 1].map(|a| from[a] + share * (met[a] - from[a])));
         thickness.push(thickness[last]);
     }
 }

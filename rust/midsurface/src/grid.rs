@@ -106,6 +106,12 @@ impl Grid {
         self.direction.map(|row| dot(row, v))
     }
 
+    /// Row-major matrix whose columns are the steps from voxel to voxel, world units.
+    pub(crate) fn voxel_steps(&self) -> [Vec3; 3] {
+        self.direction
+            .map(|row| std::array::from_fn(|a| row[a] * self.spacing[a]))
+    }
+
     /// World coordinates of the voxels at the volume's corners.
     pub(crate) fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|corner| {

@@ -31,6 +31,7 @@
 //! | polylines | ridge field → a line midway through every slice (`slice.rs`, `trace.rs`) | `polylines.rs` |
 //! | zipper | polylines → strips of triangles between slices (`strip.rs`) | `zipper.rs` |
 //! | mesh | triangles → 2-manifold (`manifold.rs`), better triangles (`flips.rs`), no terraces (`terraces.rs`), normals | `mesh.rs` |
+//! | edge length | triangles → those of the length asked for, if any (`remesh`) | `edge_length.rs` |
 //!
 //! Arrays are in the order x, y, z, volumes have shape (z, y, x) with x fastest. Lengths inside
 //! are in units of the finest spacing, so that the same voxels in other units give the same mesh;
@@ -57,6 +58,7 @@ mod crest;
 mod crossings;
 mod distance;
 mod distributed;
+mod edge_length;
 mod eigen;
 mod ends;
 mod error;
@@ -72,6 +74,7 @@ mod holes;
 #[cfg(feature = "inject-panics")]
 pub mod injected_panics;
 mod interpolation;
+mod lattice;
 mod look;
 mod manifold;
 mod mask;
@@ -157,9 +160,13 @@ pub struct Options {
     pub labels: Option<Vec<i64>>,
     /// Number of worker threads; 0: one a core.
     pub threads: usize,
-    /// The mesh's edge length to aim at, world units; 0: √2 times the finest spacing.
+    /// The mesh's edge length to aim at, world units; 0: √2 times the finest spacing, which the
+    /// zipper's lines have anyway, so that its mesh is left as it is.
     pub edge_length: f64,
 }
+
+/// Share of what comes after the lines that zipping takes where the mesh is remeshed.
+const ZIPPED: f64 = 0.4;
 
 impl Options {
     /// Share of the run within which labels are read and, by the zipper, lines are traced.
@@ -252,7 +259,8 @@ pub fn mid_polylines(
     Ok(polylines)
 }
 
-/// Joins the polylines of neighbouring slices to a mesh.
+/// Joins the polylines of neighbouring slices to a mesh: that of [`extract`] before any remeshing,
+/// whatever edge length the options name.
 ///
 /// # Errors
 /// Where the lines do not lie in parallel slices, memory is refused, or the observer cancels.
@@ -264,7 +272,7 @@ pub fn zip_polylines(
     polylines.check()?;
     let mut execution = Execution::new(options.threads, observer)?;
     let mut findings = Findings::default();
-    let mesh = zip(polylines, &mut findings, &mut execution)?;
+    let mesh = zip(polylines, &mut findings, 1.0, &mut execution)?;
     findings.warn(&mut execution);
     execution.finish()?;
     Ok(mesh)
@@ -282,7 +290,15 @@ fn find_surface(
         Method::PolylineZipper => {
             let (polylines, disks) = trace_polylines(parts, grid, execution, options.tracing())?;
             findings.disks = disks;
-            zip(&polylines, &mut findings, execution)?
+            match options.edge_length {
+                0.0 => zip(&polylines, &mut findings, 1.0, execution)?,
+                length => {
+                    let mesh = zip(&polylines, &mut findings, ZIPPED, execution)?;
+                    drop(polylines);
+                    execution.stage("Remeshing", ZIPPED, 1.0, 1)?;
+                    mesh.with_edge_length(length, grid.unit(), execution)?
+                }
+            }
         }
         Method::RidgeSurface => find_ridge_surface(parts, grid, options, &mut findings, execution)?,
     };
@@ -387,12 +403,17 @@ fn find_ridge_surface(
     Ok(mesh)
 }
 
-/// Takes what is left of the progress.
-fn zip(polylines: &Polylines, findings: &mut Findings, execution: &mut Execution) -> Result<Mesh> {
+/// Takes the share `until` of what is left of the progress.
+fn zip(
+    polylines: &Polylines,
+    findings: &mut Findings,
+    until: f64,
+    execution: &mut Execution,
+) -> Result<Mesh> {
     let polylines = &*polylines.without_repeats()?;
-    execution.stage("Zipping polylines", 0.0, 0.6, zipper::PASSES)?;
+    execution.stage("Zipping polylines", 0.0, 0.6 * until, zipper::PASSES)?;
     let triangles = zipper::zip(polylines, execution)?;
-    execution.stage("Making the mesh", 0.6, 1.0, mesh::PASSES)?;
+    execution.stage("Making the mesh", 0.6 * until, until, mesh::PASSES)?;
     findings.lines = polylines.lines.len();
     findings.triangles = triangles.len();
     if let Some(([a, b, _], _)) = triangles.first() {

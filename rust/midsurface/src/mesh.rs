@@ -10,6 +10,7 @@ use crate::execution::Execution;
 use crate::flips::flip_edges;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::{Edges, Fans, NONE};
+use crate::lattice::planes_across_slices;
 use crate::manifold::{self, make_manifold, Surface};
 use crate::normals::{normals, NORMAL_PASSES};
 use crate::polylines::Polylines;
@@ -122,7 +123,10 @@ impl Mesh {
             (&surface.triangles, &fans),
             &rough,
             &lines,
-            terraces::OF_LINES,
+            (
+                terraces::OF_LINES,
+                &planes_across_slices(polylines.voxel_steps),
+            ),
             execution,
         )?;
         let fans = match drop_degenerate(&mut surface, |p| p.map(|v| v as f32), execution)? {

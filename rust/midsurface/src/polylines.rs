@@ -16,7 +16,7 @@ use crate::execution::Execution;
 use crate::grid::{last_voxel, Grid, Vec3};
 use crate::interpolation::Sampler;
 use crate::ray::Inside;
-use crate::resample::{arc_length, distance, resample};
+use crate::resample::{arc_length, resample};
 use crate::ridge::RidgeField;
 use crate::runs::Run;
 use crate::slice::{Pixel, Point, Slice, COVERED, LINE};
@@ -49,12 +49,16 @@ pub struct Polylines {
     pub border_distance: Vec<f32>,
     /// The lines, those of a component in the order of their slices.
     pub lines: Vec<Polyline>,
+    /// Row-major matrix whose columns are the steps from voxel to voxel along the image's axes,
+    /// world units, so that terraces are known as such; all zero where that is unknown.
+    pub voxel_steps: [Vec3; 3],
 }
 
 impl Polylines {
     /// Appends the lines of others.
     pub(crate) fn append(&mut self, others: Self) -> Result<()> {
         let first = self.points.len();
+        self.voxel_steps = others.voxel_steps;
         extend(&mut self.points, others.points)?;
         extend(&mut self.thickness, others.thickness)?;
         extend(&mut self.border_distance, others.border_distance)?;
@@ -104,7 +108,10 @@ pub(crate) fn polylines(
         slices.map(move |runs| (i, runs))
     });
     let jobs = collected(slices)?;
-    let mut polylines = Polylines::default();
+    let mut polylines = Polylines {
+        voxel_steps: grid.voxel_steps(),
+        ..Polylines::default()
+    };
     let mut disks = 0;
     let mut job = jobs.iter();
     execution.stream(
@@ -195,10 +202,10 @@ fn finish(part: PartField, slice: &Slice, mut line: Trace) -> Line {
     complete(&mut views);
     let ends = ends_on_border(slice, &line);
     centre(slice, &mut line, &views, Which::All);
-    if views.iter().flatten().any(|view| view.at_border) {
+    if views.iter().flatten().any(View::at_border) {
         // Far off the middle a point sees the faces of other places than its own.
         for (view, &p) in views.iter_mut().zip(&line.points) {
-            if view.as_ref().is_some_and(|view| view.at_border) {
+            if view.as_ref().is_some_and(View::at_border) {
                 *view = part.view(slice, slice.clamp(p)).or(view.take());
             }
         }
@@ -296,19 +303,6 @@ fn seed(part: PartField, z: usize, pixels: &[Pixel], attempt: usize) -> Result<P
     Ok(ranked.select_nth_unstable_by(rank, by_height).1 .1)
 }
 
-/// Unit tangent at point i.
-fn tangent(line: &Trace, i: usize) -> Point {
-    let n = line.points.len();
-    let (before, after) = if line.closed {
-        ((i + n - 1) % n, (i + 1) % n)
-    } else {
-        (i.saturating_sub(1), (i + 1).min(n - 1))
-    };
-    let (a, b) = (line.points[before], line.points[after]);
-    let length = distance(a, b).max(1e-12);
-    [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
-}
-
 /// Covers the pixels between both faces of the label along a line. The width is measured across
 /// the line, and bounded by its neighbours', so that the line does not cover a branch.
 fn cover_line(slice: &mut Slice, line: &Trace, widths: &[f64], component: u32) {
@@ -328,7 +322,7 @@ fn cover_line(slice: &mut Slice, line: &Trace, widths: &[f64], component: u32) {
 
 /// Half widths of the label at the points of a line.
 fn half_widths(slice: &Slice, line: &Trace, component: u32) -> Vec<f64> {
-    let width = |i| half_width(slice, line.points[i], tangent(line, i), component);
+    let width = |i| half_width(slice, line.points[i], line.tangent(i), component);
     (0..line.points.len()).map(width).collect()
 }
 

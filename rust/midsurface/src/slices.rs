@@ -38,6 +38,12 @@ impl Polylines {
         if let Some(i) = self.thickness.iter().position(|t| !t.is_finite()) {
             return fail(format!("the thickness of point {i} is no finite number"));
         }
+        let steps = self.voxel_steps.as_flattened();
+        if !steps.iter().all(|v| v.is_finite()) {
+            return fail(
+                "a step from voxel to voxel has a coordinate that is no finite number".into(),
+            );
+        }
         let no_distance = |d: &f32| d.is_nan() || *d < 0.0;
         if let Some(i) = self.border_distance.iter().position(no_distance) {
             return fail(format!(
@@ -167,7 +173,10 @@ impl Polylines {
         if !(0..self.lines.len()).any(repeats) {
             return Ok(Cow::Borrowed(self));
         }
-        let mut clean = Self::default();
+        let mut clean = Self {
+            voxel_steps: self.voxel_steps,
+            ..Self::default()
+        };
         for (i, line) in self.lines.iter().enumerate() {
             let first = clean.points.len();
             for (k, &p) in self.points_of(i).iter().enumerate() {

@@ -15,6 +15,7 @@ use crate::error::{collected, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, length, sub, unit, Vec3};
 use crate::halfedge::{self, ends, previous, Fans, NONE};
+use crate::lattice::LatticePlane;
 
 /// A windowed-sinc filter.
 #[derive(Debug, Clone, Copy)]
@@ -25,10 +26,14 @@ pub(crate) struct LowPass {
     pub degree: usize,
 }
 
-/// The filters for lines in slices.
+/// The filters for lines in slices. Near lattice planes waves are longer than elsewhere: of a tube along
+/// z all slices have the same terraces.
 pub(crate) const OF_LINES: Filters = Filters {
     usual: STRONG,
-    near_lattice_planes: None,
+    near_lattice_planes: Some(LowPass {
+        passband: 0.0125,
+        degree: 48,
+    }),
 };
 /// A filter for long terraces: it takes waves of less than about fourteen edges.
 pub(crate) const STRONG: LowPass = LowPass {
@@ -44,9 +49,6 @@ pub(crate) struct Filters {
     pub near_lattice_planes: Option<LowPass>,
 }
 
-/// Cosines of the angle between a normal and an axis: the share of the filter near lattice planes
-/// grows from the first, at 11°, where terraces are five voxels long, to the second, at 6° and ten.
-const NEAR_LATTICE_PLANE: [f64; 2] = [0.98, 0.995];
 /// No point moves by more than this share of its line's edges: nearly half a voxel.
 const MOST: f64 = 0.3;
 /// Passes that smooth the normals along which heights are measured.
@@ -141,21 +143,28 @@ struct Neighbours {
 }
 
 /// Smooths the points of a manifold, given by its triangles and their fans, along their `normals`.
-/// `lines` tells of every point how it may move.
+/// `lines` tells of every point how it may move, `lattice` which
+/// lattice planes count.
 pub(crate) fn flatten_terraces(
     points: &mut [Vec3],
     (triangles, fans): (&[[u32; 3]], &Fans),
     normals: &[Vec3],
     lines: &[LineOfPoint],
-    filters: Filters,
+    (filters, lattice): (Filters, &[LatticePlane]),
     execution: &mut Execution,
 ) -> Result<()> {
     if triangles.is_empty() {
         return Ok(());
     }
     let neighbours = Neighbours::new((triangles, fans), points, lines, execution)?;
-    let moves = moves(points, normals, &neighbours, filters, execution)?;
     let rings = neighbours.rings(lines)?;
+    let moves = moves(
+        points,
+        normals,
+        (&neighbours, &rings),
+        (filters, lattice),
+        execution,
+    )?;
     for (i, point) in points.iter_mut().enumerate() {
         let way = match lines[i].on_boundary {
             OnBoundary::Within(across) if neighbours.boundary[i] => within(normals[i], across),
@@ -182,8 +191,8 @@ fn within(normal: Vec3, across: Vec3) -> Vec3 {
 fn moves(
     points: &[Vec3],
     normals: &[Vec3],
-    neighbours: &Neighbours,
-    filters: Filters,
+    (neighbours, rings): (&Neighbours, &[u8]),
+    (filters, lattice): (Filters, &[LatticePlane]),
     execution: &mut Execution,
 ) -> Result<Vec<f64>> {
     let smoothed = neighbours.smooth_normals(normals, execution)?;
@@ -198,19 +207,17 @@ fn moves(
     let mut moves = twiced(&heights, neighbours, filters.usual, execution)?;
     if let Some(filter) = filters.near_lattice_planes {
         let others = twiced(&heights, neighbours, filter, execution)?;
-        for ((own, other), normal) in moves.iter_mut().zip(others).zip(&smoothed) {
-            *own += near_lattice_plane(*normal) * (other - *own);
+        for (p, (own, other)) in moves.iter_mut().zip(others).enumerate() {
+            let share = f64::from(rings[p]) / f64::from(RINGS);
+            let near = lattice
+                .iter()
+                .map(|plane| (plane.nearness(smoothed[p]), plane.most_off));
+            let nearest = |a: (f64, f64), b: (f64, f64)| if b.0 > a.0 { b } else { a };
+            let (nearness, most_off) = near.fold((0.0, 0.0), nearest);
+            *own += share * nearness * (other - *own).clamp(-most_off, most_off);
         }
     }
     Ok(moves)
-}
-
-/// How nearly parallel to a lattice plane a sheet is, 0 to 1.
-fn near_lattice_plane(normal: Vec3) -> f64 {
-    let [from, to] = NEAR_LATTICE_PLANE;
-    let cosine = normal.iter().fold(0.0, |most: f64, n| most.max(n.abs()));
-    let share = ((cosine - from) / (to - from)).clamp(0.0, 1.0);
-    share * share * (3.0 - 2.0 * share)
 }
 
 /// How far a low-pass would move each point. A polynomial f alone would shrink what is curved by its

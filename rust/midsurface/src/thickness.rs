@@ -20,8 +20,8 @@ pub(crate) struct View {
     /// How far along the normal the one face is that is seen where the other lies outside the
     /// volume; negative behind the point.
     pub one_face: Option<f64>,
-    /// Whether a border of the volume cuts off what the ridge field should have seen here.
-    pub at_border: bool,
+    /// Across which axes a border of the volume cuts off what the ridge field should have seen here.
+    pub near_border: [bool; 3],
 }
 
 impl View {
@@ -39,11 +39,12 @@ impl View {
             [Reach::Border, Reach::Border] => 2.0 * depth(distance, from),
         };
         let across = parallel_to_border(distance, from, normal, about);
-        let at_border = across != normal;
+        let near_border = [0, 1, 2].map(|a| across[a] != normal[a]);
+        let at_border = near_border.contains(&true);
         // Parallel to all borders that are near, or, in a corner, to the one that helps.
         let single = |a: usize| {
             let turned = std::array::from_fn(|k| if k == a { across[k] } else { normal[k] });
-            (across[a] != normal[a]).then_some(turned)
+            near_border[a].then_some(turned)
         };
         let ways = std::iter::once(across).chain((0..3).filter_map(single));
         let usable = ways.filter(|way| at_border && length(*way) > 0.5);
@@ -82,8 +83,13 @@ impl View {
             thickness,
             to_middle,
             one_face,
-            at_border,
+            near_border,
         }
+    }
+
+    /// Whether any border of the volume is so near.
+    pub fn at_border(&self) -> bool {
+        self.near_border.contains(&true)
     }
 }
 

@@ -9,6 +9,7 @@
 //! sheet fraction says that the sheet ends.
 
 use crate::grid::Vec3;
+use crate::resample::distance;
 use crate::slice::{Point, Slice, LINE, TRACED};
 
 /// Step of the trace, in units of the finest spacing of the slice: half the distance of the
@@ -26,6 +27,21 @@ const LAG: usize = 6;
 pub(crate) struct Trace {
     pub points: Vec<Point>,
     pub closed: bool,
+}
+
+impl Trace {
+    /// Unit tangent at point i.
+    pub fn tangent(&self, i: usize) -> Point {
+        let n = self.points.len();
+        let (before, after) = if self.closed {
+            ((i + n - 1) % n, (i + 1) % n)
+        } else {
+            (i.saturating_sub(1), (i + 1).min(n - 1))
+        };
+        let (a, b) = (self.points[before], self.points[after]);
+        let length = distance(a, b).max(1e-12);
+        [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
+    }
 }
 
 /// Why a line ended.

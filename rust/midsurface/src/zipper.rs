@@ -25,6 +25,11 @@ const GAP: usize = 4;
 const FREE: i64 = 64;
 /// An edge without a partner may be farther away than its strip's pairs by this factor.
 const FARTHER: f64 = 1.8;
+/// The most edges that end a strip where both lines leave the volume. At a small angle to its border
+/// the one goes on for long where the other has left: with five edges, at 8°.
+const LEAVING: i64 = 16;
+/// A point is on the border where it is nearer to it than this share of an edge.
+const ON_BORDER: f64 = 1e-2;
 /// Relative difference below which two lengths are the same: a change of units costs a last bit.
 pub(crate) const SAME: f64 = 1e-7;
 
@@ -165,6 +170,25 @@ impl<'a> SliceEdges<'a> {
         (0..n)
             .contains(&target)
             .then(|| (edge as i64 - at + target) as usize)
+    }
+
+    /// Edges beyond `edge` where its line ends on the border of the volume.
+    fn edges_to_border(&self, edge: usize, sign: i64) -> Option<i64> {
+        let line = self.line(edge);
+        let at = i64::from(self.edges[edge].at);
+        let last = edge_count(line) as i64 - 1;
+        let (count, [before, end]) = if sign > 0 {
+            (last - at, [last, last + 1])
+        } else {
+            (at, [1, 0])
+        };
+        let [before, end] = [before, end].map(|i| point(line, i) as usize);
+        let edge = length(sub(
+            self.polylines.points[before],
+            self.polylines.points[end],
+        ));
+        let is_on_border = f64::from(self.polylines.border_distance[end]) < ON_BORDER * edge;
+        (!line.closed && is_on_border).then_some(count)
     }
 
     /// Steps along the line from edge a to edge b of the same line; the shorter way round.
@@ -411,6 +435,17 @@ impl<'a> Pairing<'a> {
 
     /// How many free edges beyond `pair` join its strip, on either side.
     fn free_edges(&mut self, pair: (usize, usize), sign: [i64; 2], mean: f64) -> [i64; 2] {
+        if let Some(free) = self.edges_to_border(pair, sign) {
+            for k in 1..=free[0] {
+                let edge = self.below.step(pair.0, sign[0] * k);
+                edge.into_iter().for_each(|a| self.taken_below[a] = true);
+            }
+            for k in 1..=free[1] {
+                let edge = self.above.step(pair.1, sign[1] * k);
+                edge.into_iter().for_each(|b| self.taken_above[b] = true);
+            }
+            return free;
+        }
         let mut free = [0; 2];
         for k in 1..=GAP as i64 {
             let Some(a) = self.below.step(pair.0, sign[0] * k) else {
@@ -435,6 +470,23 @@ impl<'a> Pairing<'a> {
             free[1] = k;
         }
         free
+    }
+
+    /// The edges beyond `pair` on either side, where both lines leave the volume there, one of them
+    /// soon, and no other strip has any of these edges.
+    fn edges_to_border(&self, pair: (usize, usize), sign: [i64; 2]) -> Option<[i64; 2]> {
+        let free = [
+            self.below.edges_to_border(pair.0, sign[0])?,
+            self.above.edges_to_border(pair.1, sign[1])?,
+        ];
+        let is_free = |side: &SliceEdges, taken: &[bool], edge, sign, count| {
+            (1..=count).all(|k| side.step(edge, sign * k).is_some_and(|e| !taken[e]))
+        };
+        let joins = free[0].min(free[1]) <= GAP as i64
+            && free[0].max(free[1]) <= LEAVING
+            && is_free(self.below, &self.taken_below, pair.0, sign[0], free[0])
+            && is_free(self.above, &self.taken_above, pair.1, sign[1], free[1]);
+        joins.then_some(free)
     }
 
     /// Whether a free edge is near enough to the end `anchor` of a strip to join it.

@@ -37,6 +37,39 @@ fn tubes(thickness: f64, count: usize) -> impl Iterator<Item = (String, Phantom)
     })
 }
 
+/// Seeds from the one that the environment names, so that `SEED=100 cargo test …` tries others.
+fn seeds(count: u64) -> std::ops::Range<u64> {
+    let seed = std::env::var("SEED").map(|seed| seed.parse().expect("SEED is a whole number"));
+    let first = seed.unwrap_or(1);
+    first..first + count
+}
+
+#[test]
+fn random_tubes() {
+    let tubes = seeds(24).map(upright_tube);
+    assert_all_match(tubes.map(|tube| (tube.name.clone(), tube)), STRICT);
+}
+
+#[test]
+fn random_leaning_sheets_with_a_hole() {
+    let sheets = seeds(24).map(leaning_sheet);
+    assert_all_match(sheets.map(|sheet| (sheet.name.clone(), sheet)), STRICT);
+}
+
+#[test]
+fn tubes_whose_terraces_are_longest() {
+    // The circle comes to within a hair of the next row of voxels, on one side at least.
+    let tubes = [49, 64, 91, 154, 178, 186].map(upright_tube);
+    assert_all_match(tubes.map(|tube| (tube.name.clone(), tube)), STRICT);
+}
+
+#[test]
+fn sheets_that_leave_at_a_small_angle() {
+    // The ends of neighbouring slices' lines lie several edges apart.
+    let sheets = [84, 99, 114, 129, 149].map(leaning_sheet);
+    assert_all_match(sheets.map(|sheet| (sheet.name.clone(), sheet)), STRICT);
+}
+
 #[test]
 fn tubes_6_thick_wherever_their_centre_is() {
     assert_all_match(tubes(6.0, 8), STRICT);
@@ -109,22 +142,19 @@ fn leaning_sheets_8_thick_with_a_hole() {
 
 #[test]
 fn leaning_sheets_12_thick_with_a_hole() {
-    // The last voxel or two in the corners of the volume are missing.
+    // In a corner of the volume a point may be missing.
     let limits = Limits {
         rms: 0.12,
-        covered: 0.993,
+        covered: 0.9997,
     };
     sheets_with_a_hole(&[30.0, 40.0, 45.0], 12.0, limits);
 }
 
 #[test]
 fn leaning_sheets_6_thick_with_a_hole() {
-    sheets_with_a_hole(&[10.0, 30.0, 40.0, 45.0], 6.0, STRICT);
-    let at = |azimuth| sheet_with_a_hole(20.0, azimuth, 6.0);
-    assert_all_match([0.0, 17.0, 33.0, 75.0].map(at), STRICT);
-    // Here every second slice is nearly the same: terraces 33 slices long, which no low-pass that
-    // spares the bends of membranes removes.
-    assert_all_match([at(45.0)], complete_within(0.102));
+    // At 20 degrees and an azimuth of 45 the sheet is nearly a plane (2 2 1) of the lattice: terraces a
+    // third of a voxel high and 33 slices long.
+    sheets_with_a_hole(&[10.0, 20.0, 30.0, 40.0, 45.0], 6.0, STRICT);
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod bad_input;
 mod beyond_32_bits;
 mod chain;
 mod determinism;
+mod edge_length;
 mod fields;
 mod frames;
 mod image_file;

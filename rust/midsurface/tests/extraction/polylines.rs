@@ -97,6 +97,9 @@ fn points_that_are_no_numbers() {
         polylines.border_distance[3] = bad;
         assert_refused(&polylines);
     }
+    let mut polylines = straight(4, 10);
+    polylines.voxel_steps[1][2] = f64::NAN;
+    assert_refused(&polylines);
 }
 
 #[test]
