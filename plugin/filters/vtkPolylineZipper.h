@@ -5,8 +5,8 @@
  * Input: the vtkPolyData that vtkMidPolylines makes, of which the line cells with these arrays are
  * read: cell array `Slice` (required); `Label` and `Component` (default: 1 and 0), and the point
  * arrays `Thickness` (default: 0) and `BorderDistance` (default: there is no border); and the field
- * data array `VoxelSteps` (default: unknown, so that terraces of voxels are flattened less). Output:
- * the mesh that vtkMidSurfaceFilter makes before any remeshing, see there.
+ * data array `VoxelSteps` (default: unknown, so that terraces of voxels are flattened less).
+ * Output: the mesh that vtkMidSurfaceFilter makes before any remeshing, see there.
  */
 
 #ifndef vtkPolylineZipper_h

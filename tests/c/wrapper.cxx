@@ -115,7 +115,9 @@ void FailuresAreThrown()
   const auto view = [] { midsurface::Arrays(midsurface::Mesh()); };
   CHECK(StatusOf(view, "`mesh` is NULL") == MIDSURFACE_STATUS_INVALID_ARGUMENT);
   const auto make = [] {
-    midsurface::MakePolylines({ nullptr, 1, {}, {}, {}, {}, {}, {}, {}, {}, {} });
+    midsurface_polyline_arrays arrays{};
+    arrays.point_count = 1;
+    midsurface::MakePolylines(arrays);
   };
   CHECK(StatusOf(make, "`arrays.points` is NULL") == MIDSURFACE_STATUS_INVALID_ARGUMENT);
 }
