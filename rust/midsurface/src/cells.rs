@@ -81,6 +81,18 @@ impl Cells {
         self.dimensions.iter().product()
     }
 
+    /// Whether a cell is the one that holds the lower corner of what two boxes have in common: two that
+    /// meet in several cells are to be looked at in one.
+    pub fn is_first_of_both(&self, cell: u32, [low, other_low]: [Vec3; 2]) -> bool {
+        let [nx, ny, _] = self.dimensions;
+        let cell = cell as usize;
+        let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
+        (0..3).all(|k| {
+            let common = (low[k].max(other_low[k]) - self.low[k]) / self.side;
+            floor(common).max(0) as usize == at[k]
+        })
+    }
+
     /// The cells that a box reaches into; none where it lies beyond the grid.
     pub fn reached_by(&self, [low, high]: [Vec3; 2]) -> impl Iterator<Item = u32> {
         let [nx, ny, nz] = self.dimensions;

@@ -6,13 +6,14 @@
 //! the one run into the other. A rim that touches another triangle is drawn back into its own
 //! sheet, step by step and no farther than it takes. What touches even so is cut away.
 //!
-//! Only rims and what is next to them are looked at, in the cells of a grid, so that it costs little where nothing touches.
+//! Only rims and what is next to them are looked at, in the cells of a grid, so that it costs little
+//! where nothing touches.
 
 use crate::buckets::Buckets;
 use crate::cells::{bounds, near, overlap, Cells};
 use crate::error::{collected, extend, zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, sub};
+use crate::grid::{along, cross, dot, sub};
 use crate::halfedge::{Fans, NONE};
 use crate::manifold::{make_manifold, Surface};
 use crate::scraps::drop_scraps;
@@ -34,6 +35,8 @@ const FAR: Ring = Ring::MAX;
 /// Triangles that have no point on a rim touch if they are nearer to each other than this, work units:
 /// as far as rounding goes.
 const CROSSING: f64 = 1e-4;
+/// Triangles face alike up to this cosine.
+const ALIKE: f64 = 0.5;
 /// Triangles or points handed to a worker at a time.
 const PIECE: usize = 4096;
 /// Passes over the triangles that [`remove_self_intersections`] makes where nothing touches, for its
@@ -123,22 +126,19 @@ fn touching(
         at_rim.iter().flat_map(of)
     };
     let in_cell = Buckets::new(cells.count(), entries)?;
+    let is_same = |p: u32, q: u32| {
+        component(surface.source[p as usize]) == component(surface.source[q as usize])
+    };
     let touches = |t: u32, rim: u32| {
-        let (own, other) = (bounds(surface, t), bounds(surface, rim));
         let [a, b] = [t, rim].map(|t| surface.triangles[t as usize]);
-        let room = if is_at_rim([t, rim]) {
-            TOUCHING
-        } else {
-            CROSSING
-        };
-        let is_same = |p: u32, q: u32| {
-            component(surface.source[p as usize]) == component(surface.source[q as usize])
-        };
-        // Two at rims meet twice.
-        (t < rim || !is_near_rim(t))
-            && overlap(own, other)
-            && is_same(a[0], b[0])
-            && touch(a, b, &surface.points, room)
+        if !is_same(a[0], b[0]) {
+            return false;
+        }
+        if is_at_rim([t, rim]) {
+            return touch(a, b, &surface.points, TOUCHING);
+        }
+        let meet = a.iter().any(|p| b.contains(p));
+        !(meet && face_alike(surface, [a, b])) && touch(a, b, &surface.points, CROSSING)
     };
     let pieces = collected(among.chunks(PIECE))?;
     let mut pairs = Vec::new();
@@ -147,9 +147,18 @@ fn touching(
         |piece| {
             let mut found: Vec<[u32; 2]> = Vec::new();
             for &t in *piece {
-                for cell in cells.reached_by(bounds(surface, t)) {
+                let own = bounds(surface, t);
+                // Two near rims meet twice.
+                let is_near_rim = is_near_rim(t);
+                for cell in cells.reached_by(own) {
                     let rims = in_cell.of(cell as usize).iter();
-                    let rims = rims.filter(|&&rim| touches(t, rim));
+                    let rims = rims.filter(|&&rim| {
+                        let other = bounds(surface, rim);
+                        (t < rim || !is_near_rim)
+                            && overlap(own, other)
+                            && cells.is_first_of_both(cell, [own[0], other[0]])
+                            && touches(t, rim)
+                    });
                     extend(&mut found, rims.map(|&rim| [t, rim]))?;
                 }
             }
@@ -157,14 +166,23 @@ fn touching(
         },
         |found: Result<_>| extend(&mut pairs, found?),
     )?;
-    // Two triangles may meet in several cells.
     pairs.sort_unstable();
-    pairs.dedup();
     // What touches behind a rim may be rid of together with that.
     if pairs.iter().any(|pair| is_at_rim(*pair)) {
         pairs.retain(|pair| is_at_rim(*pair));
     }
     Ok(pairs)
+}
+
+/// Whether two triangles face nearly the same way: such that share a point cross only where one between
+/// them is turned over, which then crosses both.
+fn face_alike(surface: &Surface, triangles: [[u32; 3]; 2]) -> bool {
+    let [m, n] = triangles.map(|t| {
+        let [a, b, c] = t.map(|p| surface.points[p as usize]);
+        cross(sub(b, a), sub(c, a))
+    });
+    let cosine = dot(m, n);
+    cosine > 0.0 && cosine * cosine > ALIKE * ALIKE * dot(m, m) * dot(n, n)
 }
 
 /// Draws the rims of pairs that touch back; returns the pairs that touch in the end.
