@@ -124,14 +124,10 @@ void CopyPolylines(const midsurface_polyline_arrays& polylines, vtkPolyData* out
 }
 
 //------------------------------------------------------------------------------
-PolylineInput::PolylineInput(vtkPolyData* input, bool mayBeEmpty)
+PolylineInput::PolylineInput(vtkPolyData* input)
   : Input(input)
 {
   this->View.line_count = static_cast<size_t>(input->GetNumberOfLines());
-  if (this->View.line_count == 0 && mayBeEmpty)
-  {
-    return;
-  }
   if (this->View.line_count == 0)
   {
     throw std::runtime_error(

@@ -32,11 +32,8 @@ void CopyPolylines(const midsurface_polyline_arrays& polylines, vtkPolyData* out
 class PolylineInput
 {
 public:
-  /**
-   * Where `mayBeEmpty`, other processes may have the lines.
-   * @throws std::runtime_error with a message for the user where `input` cannot be used.
-   */
-  PolylineInput(vtkPolyData* input, bool mayBeEmpty);
+  /** @throws std::runtime_error with a message for the user where `input` cannot be used. */
+  explicit PolylineInput(vtkPolyData* input);
 
   const midsurface_polyline_arrays& Arrays() const { return this->View; }
 

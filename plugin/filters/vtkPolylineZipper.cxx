@@ -15,9 +15,9 @@ vtkStandardNewMacro(vtkPolylineZipper);
 
 namespace
 {
-midsurface::Polylines ReadLines(vtkPolyData* input, bool mayBeEmpty)
+midsurface::Polylines ReadLines(vtkPolyData* input)
 {
-  const PolylineInput lines(input, mayBeEmpty);
+  const PolylineInput lines(input);
   return midsurface::MakePolylines(lines.Arrays());
 }
 
@@ -26,9 +26,12 @@ void ZipTogether(FilterRun& run, int threads, vtkPolyData* input, vtkPolyData* o
 {
   const ProcessExchange exchange;
   run.Options.Threads = static_cast<uint32_t>(exchange.ShareThreads(threads));
-  const bool haveLines = exchange.Any(input->GetNumberOfLines() > 0);
+  const bool hasLines = input->GetNumberOfLines() > 0;
+  // Where nobody has any, the first one says so.
+  const bool isAmiss = !exchange.Any(hasLines) && exchange.IsFirst();
   midsurface::Polylines lines;
-  exchange.Guard([&] { lines = ReadLines(input, haveLines || !exchange.IsFirst()); });
+  exchange.Guard(
+    [&] { lines = hasLines || isAmiss ? ReadLines(input) : midsurface::MakePolylines({}); });
   const midsurface::Mesh mesh = midsurface::ZipPiece(lines, exchange.Functions(), run.Options);
   CopyMeshPiece(midsurface::Arrays(mesh), output);
 }
@@ -63,7 +66,7 @@ int vtkPolylineZipper::RequestData(
     }
     else if (Pieces::HasToWork(*this->Run, outputInformation))
     {
-      const midsurface::Polylines lines = ReadLines(input, false);
+      const midsurface::Polylines lines = ReadLines(input);
       const midsurface::Mesh mesh = midsurface::Zip(lines, run.Options);
       CopyMesh(midsurface::Arrays(mesh), output);
     }

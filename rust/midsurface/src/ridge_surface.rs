@@ -271,8 +271,8 @@ fn cut_surface(
     Ok((surface.compact()?, fraction))
 }
 
-/// Closes a surface's false holes, moves it midway, up to the border of the volume, and leads it on to where sheets meet;
-/// `field` is the sheet fraction at the voxels.
+/// Closes a surface's false holes, moves it midway, up to the border of the volume, and leads it on to
+/// where sheets meet; `field` is the sheet fraction at the voxels.
 fn moved_midway(
     label: &Label,
     mut surface: Surface,
