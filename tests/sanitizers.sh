@@ -37,7 +37,7 @@ coverage="-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4
 RUSTFLAGS="-Zsanitizer=address --cfg fuzzing -Ccodegen-units=1 $(echo $coverage)" \
   cargo build --locked --quiet --release --target "$target" --manifest-path fuzz/Cargo.toml
 mkdir -p fuzz/artifacts
-for name in volume volume_polylines volume_fields polylines triangles; do
+for name in volume volume_polylines volume_fields volume_pieces polylines triangles; do
   program=$CARGO_TARGET_DIR/$target/release/$name
   found=$(mktemp -d)
   echo "$program"

@@ -1,7 +1,7 @@
 /* Volumes of every scalar type, up to 18 voxels along each axis, mostly of runs of few labels, into
- * each function that takes one: both methods; labels and ridge field; the polylines, joined.
- * Lengths, types, frames and options may be lies. */
-#include "bytes.h"
+ * each function that takes a whole one: both methods; labels and ridge field; the polylines,
+ * joined. Lengths, types, frames and options may be lies. */
+#include "volume.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -65,13 +65,12 @@ static void take_frame(bytes* input, midsurface_volume* volume)
   volume->scalar_type = flags & 64 ? take_byte(input) : volume->scalar_type;
 }
 
-static void run_extract(
-  const midsurface_volume* volume, size_t voxels, const midsurface_options* options)
+static void run_extract(const given* given)
 {
-  (void)voxels;
   midsurface_mesh* mesh = NULL;
   midsurface_error* error = NULL;
-  const midsurface_status status = midsurface_extract(volume, options, &mesh, &error);
+  const midsurface_status status =
+    midsurface_extract(&given->volume, &given->options, &mesh, &error);
   check_outcome(status, error);
   if (status == MIDSURFACE_STATUS_OK)
   {
@@ -79,19 +78,18 @@ static void run_extract(
   }
 }
 
-static void run_polylines(
-  const midsurface_volume* volume, size_t voxels, const midsurface_options* options)
+static void run_polylines(const given* given)
 {
-  (void)voxels;
   midsurface_polylines* polylines = NULL;
   midsurface_mesh* mesh = NULL;
   midsurface_error* error = NULL;
-  midsurface_status status = midsurface_extract_polylines(volume, options, &polylines, &error);
+  midsurface_status status =
+    midsurface_extract_polylines(&given->volume, &given->options, &polylines, &error);
   check_outcome(status, error);
   if (status == MIDSURFACE_STATUS_OK)
   {
     error = NULL;
-    status = midsurface_zip(polylines, options, &mesh, &error);
+    status = midsurface_zip(polylines, &given->options, &mesh, &error);
     check_outcome(status, error);
     if (status == MIDSURFACE_STATUS_OK)
     {
@@ -101,12 +99,12 @@ static void run_polylines(
   midsurface_polylines_free(polylines);
 }
 
-static void run_fields(
-  const midsurface_volume* volume, size_t voxels, const midsurface_options* options)
+static void run_fields(const given* given)
 {
   midsurface_label_list* labels = NULL;
   midsurface_error* error = NULL;
-  midsurface_status status = midsurface_find_labels(volume, options, &labels, &error);
+  midsurface_status status =
+    midsurface_find_labels(&given->volume, &given->options, &labels, &error);
   check_outcome(status, error);
   for (size_t index = 1; index < midsurface_label_list_length(labels); index++)
   {
@@ -115,10 +113,11 @@ static void run_fields(
   }
   midsurface_label_list_free(labels);
 
+  const size_t voxels = given->voxels;
   float* distance = buffer_of(voxels, sizeof *distance);
   float* ridge = buffer_of(voxels, sizeof *ridge);
   error = NULL;
-  status = midsurface_ridge_field(volume, options, distance, ridge, voxels, &error);
+  status = midsurface_ridge_field(&given->volume, &given->options, distance, ridge, voxels, &error);
   check_outcome(status, error);
   for (size_t voxel = 0; status == MIDSURFACE_STATUS_OK && voxel < voxels; voxel++)
   {
@@ -128,34 +127,33 @@ static void run_fields(
   free(ridge);
 }
 
-typedef void run_function(
-  const midsurface_volume* volume, size_t voxels, const midsurface_options* options);
-
-static void run_on_volume(const uint8_t* data, size_t size, run_function* run)
+void run_on_volume(const uint8_t* data, size_t size, run_function* run)
 {
   bytes input = { data, size };
-  midsurface_volume volume = { 0 };
+  given given = { .last = size ? data[size - 1] : 0 };
+  midsurface_volume* volume = &given.volume;
   const uint32_t type = take_byte(&input) % 10;
-  volume.scalar_type = type;
-  volume.length = 1;
+  volume->scalar_type = type;
+  volume->length = 1;
   for (int axis = 0; axis < 3; axis++)
   {
-    volume.dimensions[axis] = take_byte(&input) % 18 + 1;
-    volume.length *= volume.dimensions[axis];
+    volume->dimensions[axis] = take_byte(&input) % 18 + 1;
+    volume->length *= volume->dimensions[axis];
   }
-  const size_t voxels = volume.length;
+  given.voxels = volume->length;
+  given.scalar_size = scalar_sizes[type];
   int64_t labels[4];
   unsigned calls = 0;
-  take_frame(&input, &volume);
-  midsurface_options options = take_options(&input, labels, &calls);
-  void* scalars = take_scalars(&input, type, voxels);
-  volume.scalars = scalars;
+  take_frame(&input, volume);
+  given.options = take_options(&input, labels, &calls);
+  void* scalars = take_scalars(&input, type, given.voxels);
+  volume->scalars = scalars;
   /* What it may claim is a length or a type that must be refused, or that fits in what there is. */
-  const bool fits = volume.length != voxels || volume.scalar_type >= 10 ||
-    scalar_sizes[volume.scalar_type] <= scalar_sizes[type];
+  const bool fits = volume->length != given.voxels || volume->scalar_type >= 10 ||
+    scalar_sizes[volume->scalar_type] <= given.scalar_size;
   if (fits)
   {
-    run(&volume, voxels, &options);
+    run(&given);
   }
   free(scalars);
 }

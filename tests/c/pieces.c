@@ -1,68 +1,15 @@
 /* Volumes and meshes in pieces, by two threads in place of two processes. */
 #include "check.h"
 #include "meshes.h"
+#include "two_processes.h"
 #include "volumes.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <threads.h>
-
-/* One message on its way, each way. */
-typedef struct
-{
-  mtx_t mutex;
-  cnd_t changed;
-  const int64_t* numbers[2];
-  size_t length[2];
-} Link;
-
-typedef struct
-{
-  Link* link;
-  size_t process;
-} End;
-
-static bool send_numbers(void* user, size_t to, const int64_t* numbers, size_t length)
-{
-  End* end = user;
-  Link* link = end->link;
-  mtx_lock(&link->mutex);
-  link->numbers[to] = numbers;
-  link->length[to] = length;
-  cnd_broadcast(&link->changed);
-  while (link->numbers[to])
-  {
-    cnd_wait(&link->changed, &link->mutex);
-  }
-  mtx_unlock(&link->mutex);
-  return true;
-}
-
-static bool receive_numbers(void* user, size_t from, int64_t* numbers, size_t length)
-{
-  End* end = user;
-  Link* link = end->link;
-  (void)from;
-  mtx_lock(&link->mutex);
-  while (!link->numbers[end->process])
-  {
-    cnd_wait(&link->changed, &link->mutex);
-  }
-  const bool fits = link->length[end->process] == length;
-  if (fits)
-  {
-    memcpy(numbers, link->numbers[end->process], length * sizeof *numbers);
-  }
-  link->numbers[end->process] = NULL;
-  cnd_broadcast(&link->changed);
-  mtx_unlock(&link->mutex);
-  return fits;
-}
 
 /* What one process has, and what it gets. */
 typedef struct
 {
-  End end;
   const midsurface_piece* piece;
   const midsurface_triangle_mesh* triangles;
   const char* excuse;
@@ -91,60 +38,39 @@ static void zip(Process* process, const midsurface_exchange* exchange)
   midsurface_polylines_free(lines);
 }
 
-static int work(void* argument)
+static int work(void* argument, const midsurface_exchange* exchange)
 {
   Process* process = argument;
   const midsurface_options options = midsurface_options_default();
-  const midsurface_exchange exchange = {
-    .processes = 2,
-    .process = process->end.process,
-    .send = send_numbers,
-    .receive = receive_numbers,
-    .user = &process->end,
-  };
   if (process->excuse)
   {
-    process->status = midsurface_abandon(&exchange, process->excuse, &process->error);
+    process->status = midsurface_abandon(exchange, process->excuse, &process->error);
   }
   else if (process->triangles)
   {
     process->status =
-      midsurface_measure_pieces(process->triangles, &exchange, &process->table, &process->error);
+      midsurface_measure_pieces(process->triangles, exchange, &process->table, &process->error);
   }
   else if (process->distance)
   {
-    process->status = midsurface_ridge_field_piece(process->piece, &exchange, &options,
+    process->status = midsurface_ridge_field_piece(process->piece, exchange, &options,
       process->distance, process->ridge, process->piece->volume.length, &process->error);
   }
   else if (process->zips)
   {
-    zip(process, &exchange);
+    zip(process, exchange);
   }
   else
   {
-    process->status = midsurface_extract_piece(
-      process->piece, &exchange, &options, &process->mesh, &process->error);
+    process->status =
+      midsurface_extract_piece(process->piece, exchange, &options, &process->mesh, &process->error);
   }
   return 0;
 }
 
 static void run_both(Process processes[2])
 {
-  Link link = { .numbers = { NULL, NULL } };
-  mtx_init(&link.mutex, mtx_plain);
-  cnd_init(&link.changed);
-  thrd_t other;
-  for (size_t i = 0; i < 2; i++)
-  {
-    processes[i].end = (End){ &link, i };
-  }
-  if (CHECK(thrd_create(&other, work, &processes[1]) == thrd_success))
-  {
-    work(&processes[0]);
-    thrd_join(other, NULL);
-  }
-  cnd_destroy(&link.changed);
-  mtx_destroy(&link.mutex);
+  CHECK(run_two(work, (void* [2]){ &processes[0], &processes[1] }));
 }
 
 /* Slices from .. to of a volume of DEPTH. */
@@ -307,20 +233,32 @@ static void the_first_process_gets_the_table_of_all(void)
   check_failures(split, "spread over several processes", "process 0 failed");
 }
 
+static bool send_nothing(void* user, size_t to, const int64_t* numbers, size_t length)
+{
+  (void)user, (void)to, (void)numbers, (void)length;
+  return false;
+}
+
+static bool receive_nothing(void* user, size_t from, int64_t* numbers, size_t length)
+{
+  (void)user, (void)from, (void)numbers, (void)length;
+  return false;
+}
+
 static void an_exchange_that_cannot_be_used_is_refused(void)
 {
   static uint8_t scalars[VOXELS];
   const midsurface_volume whole = two_sheets(scalars);
   const midsurface_piece piece = slices(&whole, 0, DEPTH);
   const midsurface_options options = midsurface_options_default();
-  midsurface_exchange exchange = { .processes = 1, .send = send_numbers };
+  midsurface_exchange exchange = { .processes = 1, .send = send_nothing };
   midsurface_error* error = NULL;
   midsurface_mesh* mesh = STALE(midsurface_mesh);
   CHECK_INVALID(
     midsurface_extract_piece(&piece, &exchange, &options, &mesh, &error), error, "receive");
   CHECK(mesh == NULL);
   CHECK_INVALID(midsurface_extract_piece(&piece, NULL, &options, &mesh, &error), error, "exchange");
-  exchange.receive = receive_numbers;
+  exchange.receive = receive_nothing;
   CHECK_INVALID(midsurface_extract_piece(NULL, &exchange, &options, &mesh, &error), error, "piece");
   CHECK_INVALID(midsurface_abandon(&exchange, NULL, &error), error, "message");
   exchange.process = 1;

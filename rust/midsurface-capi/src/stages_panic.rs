@@ -5,7 +5,7 @@
 //! AddressSanitizer, as `tests/sanitizers.sh` runs it, nothing may leak either.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ffi::CStr;
+use std::ffi::{c_void, CStr};
 use std::mem::MaybeUninit;
 use std::{ptr, slice};
 
@@ -14,15 +14,19 @@ use midsurface::injected_panics::{arm, visits, Place};
 use crate::error::{
     midsurface_error, midsurface_error_free, midsurface_error_message, midsurface_status,
 };
+use crate::exchange::midsurface_exchange;
 use crate::labels::{midsurface_find_labels, midsurface_label_list_free};
 use crate::mesh::{
-    midsurface_extract, midsurface_mesh, midsurface_mesh_free, midsurface_mesh_view,
+    midsurface_extract, midsurface_extract_piece, midsurface_mesh, midsurface_mesh_free,
+    midsurface_mesh_view,
 };
 use crate::options::{midsurface_method, midsurface_options, midsurface_options_default};
+use crate::piece::midsurface_piece;
 use crate::polylines::{
-    midsurface_extract_polylines, midsurface_polylines, midsurface_polylines_free, midsurface_zip,
+    midsurface_extract_polylines, midsurface_extract_polylines_piece, midsurface_polylines,
+    midsurface_polylines_free, midsurface_zip, midsurface_zip_piece,
 };
-use crate::ridge_field::midsurface_ridge_field;
+use crate::ridge_field::{midsurface_ridge_field, midsurface_ridge_field_piece};
 use crate::volume::{midsurface_scalar_type, midsurface_volume};
 
 const SIZE: [usize; 3] = [26, 24, 20];
@@ -58,6 +62,32 @@ fn volume(labels: &[u8]) -> midsurface_volume {
         direction: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
         use_threshold: false,
         threshold: 0.0,
+    }
+}
+
+/// All of a volume, on the only process.
+fn piece(volume: &midsurface_volume) -> midsurface_piece {
+    midsurface_piece {
+        volume: *volume,
+        whole_dimensions: SIZE,
+        whole_extent_start: [0; 3],
+    }
+}
+
+/// No other process is there to send to.
+fn alone() -> midsurface_exchange {
+    unsafe extern "C" fn send(_: *mut c_void, _: usize, _: *const i64, _: usize) -> bool {
+        false
+    }
+    unsafe extern "C" fn receive(_: *mut c_void, _: usize, _: *mut i64, _: usize) -> bool {
+        false
+    }
+    midsurface_exchange {
+        processes: 1,
+        process: 0,
+        send: Some(send),
+        receive: Some(receive),
+        user: ptr::null_mut(),
     }
 }
 
@@ -99,15 +129,45 @@ fn zip(lines: *const midsurface_polylines, options: &midsurface_options) -> Outc
     mesh_outcome(|mesh, error| unsafe { midsurface_zip(lines, options, mesh, error) })
 }
 
-fn extract_polylines(volume: &midsurface_volume, options: &midsurface_options) -> Outcome {
+fn extract_piece(piece: &midsurface_piece, options: &midsurface_options) -> Outcome {
+    let exchange = alone();
+    mesh_outcome(|mesh, error| unsafe {
+        midsurface_extract_piece(piece, &exchange, options, mesh, error)
+    })
+}
+
+fn zip_piece(lines: *const midsurface_polylines, options: &midsurface_options) -> Outcome {
+    let exchange = alone();
+    mesh_outcome(|mesh, error| unsafe {
+        midsurface_zip_piece(lines, &exchange, options, mesh, error)
+    })
+}
+
+/// What a call that makes polylines gives.
+fn lines_outcome(
+    call: impl FnOnce(&mut *mut midsurface_polylines, &mut *mut midsurface_error) -> midsurface_status,
+) -> Outcome {
     let (mut lines, mut error) = (ptr::dangling_mut(), ptr::null_mut());
+    let status = call(&mut lines, &mut error);
     // SAFETY: polylines that nobody else uses, or null.
     unsafe {
-        let status = midsurface_extract_polylines(volume, options, &mut lines, &mut error);
         let text = lines.as_ref().map(|lines| format!("{lines:?}"));
         midsurface_polylines_free(lines);
         (status, error, text.unwrap_or_default())
     }
+}
+
+fn extract_polylines(volume: &midsurface_volume, options: &midsurface_options) -> Outcome {
+    lines_outcome(|lines, error| unsafe {
+        midsurface_extract_polylines(volume, options, lines, error)
+    })
+}
+
+fn extract_polylines_piece(piece: &midsurface_piece, options: &midsurface_options) -> Outcome {
+    let exchange = alone();
+    lines_outcome(|lines, error| unsafe {
+        midsurface_extract_polylines_piece(piece, &exchange, options, lines, error)
+    })
 }
 
 fn find_labels(volume: &midsurface_volume, options: &midsurface_options) -> Outcome {
@@ -121,15 +181,29 @@ fn find_labels(volume: &midsurface_volume, options: &midsurface_options) -> Outc
     }
 }
 
-fn ridge_field(volume: &midsurface_volume, options: &midsurface_options) -> Outcome {
+/// What a call that writes fields gives.
+fn fields_outcome(
+    call: impl FnOnce([*mut f32; 2], &mut *mut midsurface_error) -> midsurface_status,
+) -> Outcome {
     let mut fields = [vec![0.0f32; VOXELS], vec![0.0f32; VOXELS]];
-    let [distance, ridge] = fields.each_mut().map(Vec::as_mut_ptr);
     let mut error = ptr::null_mut();
-    let status =
-        unsafe { midsurface_ridge_field(volume, options, distance, ridge, VOXELS, &mut error) };
+    let status = call(fields.each_mut().map(Vec::as_mut_ptr), &mut error);
     let is_good = status == midsurface_status::Ok;
     let text = is_good.then(|| format!("{fields:?}"));
     (status, error, text.unwrap_or_default())
+}
+
+fn ridge_field(volume: &midsurface_volume, options: &midsurface_options) -> Outcome {
+    fields_outcome(|[distance, ridge], error| unsafe {
+        midsurface_ridge_field(volume, options, distance, ridge, VOXELS, error)
+    })
+}
+
+fn ridge_field_piece(piece: &midsurface_piece, options: &midsurface_options) -> Outcome {
+    let exchange = alone();
+    fields_outcome(|[distance, ridge], error| unsafe {
+        midsurface_ridge_field_piece(piece, &exchange, options, distance, ridge, VOXELS, error)
+    })
 }
 
 /// Whether the call succeeded, its message where it did not, and its result. The error is freed.
@@ -204,7 +278,7 @@ const RIDGE_SURFACE: [&str; 11] = [
 
 #[test]
 fn a_panic_in_any_stage_is_an_error_and_the_next_run_works() {
-    // Some eighty panics are expected; their texts would only hide an unexpected one.
+    // Some hundred and sixty panics are expected; their texts would only hide an unexpected one.
     let hook = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         let text = info.payload().downcast_ref::<String>();
@@ -238,6 +312,20 @@ fn a_panic_in_any_stage_is_an_error_and_the_next_run_works() {
     panic_in_each_stage("zip", &ZIPPING, || zip(lines, &zipper));
     panic_in_each_stage("ridge field", &stages[..2], || {
         ridge_field(&volume, &zipper)
+    });
+    let piece = piece(&volume);
+    panic_in_each_stage("ridge surface of a piece", &RIDGE_SURFACE, || {
+        extract_piece(&piece, &ridge_surface)
+    });
+    panic_in_each_stage("zipper on a piece", &stages, || {
+        extract_piece(&piece, &zipper)
+    });
+    panic_in_each_stage("polylines of a piece", &stages[..3], || {
+        extract_polylines_piece(&piece, &zipper)
+    });
+    panic_in_each_stage("zip a piece", &ZIPPING, || zip_piece(lines, &zipper));
+    panic_in_each_stage("ridge field of a piece", &stages[..2], || {
+        ridge_field_piece(&piece, &zipper)
     });
     unsafe { midsurface_polylines_free(lines) };
 }
