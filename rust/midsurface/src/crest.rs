@@ -5,13 +5,14 @@
 //! profile (`profile.rs`), with a scale of each voxel's own. A voxel is a *core* voxel where it sees
 //! the sheet only: not where the profile falls within the sheet as steeply as across, since there
 //! another sheet joins, or the label ends in a curve, and not where the normals around disagree:
-//! in the corner between two sheets their mean is the normal of neither, and would join them. The
+//! in the corner between two sheets their mean is the normal of neither, and would join them. Of a
+//! ribbon hardly wider than it is thick no voxel would be one: there more bend is allowed. The
 //! sheets of the other voxels follow from those of their core neighbours (`extension.rs`).
 
 use crate::block::{matrix_at, vector_at, Block};
 use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
 use crate::eigen::{eigenvalues, eigenvector};
-use crate::error::{zeros, Result};
+use crate::error::{collected, filled, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot as dot3, last_voxel, Vec3};
 use crate::profile::{Derivatives, Profile};
@@ -23,6 +24,8 @@ use crate::vectors::with_widest_vectors;
 const TANGENTIAL: f32 = 0.6;
 /// and is curved within the sheet by at most this share of its curvature across.
 const BENT: f32 = 0.32;
+/// Where a part has no core voxel by that, it is a ribbon: wider than thick is enough.
+const RIBBON: f32 = 0.8;
 /// The normals around a core voxel vary by at most this share of what they have in common, as the
 /// middle eigenvalue of their tensor over the largest, both above the least.
 const VARIED: f32 = 0.15;
@@ -50,11 +53,47 @@ pub(crate) fn core_sheets(
 ) -> Result<Vec<Sheet>> {
     let bricks = batch.part_of_brick.len();
     let sigma = execution.collect(bricks, |brick| mean_sigma(profile, batch, brick))?;
+    let mut sheets: Vec<Sheet> = zeros(bricks * BRICK)?;
+    let label = (batch, distance, farthest, h);
+    let mut wanted = filled(true, bricks)?;
+    for bent in [BENT, RIBBON] {
+        if wanted.contains(&true) {
+            let wanted = (wanted.as_slice(), bent);
+            find(label, profile, &sigma, wanted, &mut sheets, execution)?;
+        }
+        wanted = bricks_without_core(batch, &sheets)?;
+    }
+    let variance = |brick: usize| f64::from(sigma[brick] * sigma[brick]);
+    unshrink(batch, variance, &mut sheets, h, execution)?;
+    Ok(sheets)
+}
+
+/// The bricks of parts of which no voxel is a core voxel.
+fn bricks_without_core(batch: &Batch, sheets: &[Sheet]) -> Result<Vec<bool>> {
+    let mut has_core: Vec<bool> = zeros(batch.directories.len())?;
+    for (&part, own) in batch.part_of_brick.iter().zip(sheets.chunks_exact(BRICK)) {
+        let has = &mut has_core[part as usize];
+        *has = *has || own.iter().any(|sheet| *sheet != Sheet::default());
+    }
+    let parts = batch.part_of_brick.iter();
+    collected(parts.map(|&part| !has_core[part as usize]))
+}
+
+/// Finds the sheets of the core voxels of the `wanted` bricks, bent by at most `bent`.
+fn find(
+    (batch, distance, farthest, h): (&Batch, &[f32], f32, Vec3),
+    profile: &Profile,
+    sigma: &[f32],
+    (wanted, bent): (&[bool], f32),
+    sheets: &mut [Sheet],
+    execution: &mut Execution,
+) -> Result<()> {
+    let bricks = batch.part_of_brick.len();
     let border = |brick: usize| Border::near(batch, brick, distance, REACH * sigma[brick], h);
     let mut tensors = zeros(bricks * ENTRIES * BRICK)?;
     execution.fill(&mut tensors, ENTRIES * BRICK, |brick, out| {
         let own = &distance[brick * BRICK..][..BRICK];
-        if own.iter().all(|d| *d == 0.0) {
+        if !wanted[brick] || own.iter().all(|d| *d == 0.0) {
             return;
         }
         let border = border(brick);
@@ -62,15 +101,14 @@ pub(crate) fn core_sheets(
             #[inline(always)]
             || {
                 let derivatives = profile.derivatives(batch, brick, h);
-                find_tensors(&derivatives, own, border.as_ref(), h, out);
+                find_tensors(&derivatives, own, border.as_ref(), (bent, h), out);
             },
         );
     })?;
-    let tensors = smooth_tensors(batch, &sigma, tensors, h, execution)?;
-    let mut sheets: Vec<Sheet> = zeros(bricks * BRICK)?;
-    execution.fill(&mut sheets, BRICK, |brick, sheets| {
+    let tensors = smooth_tensors(batch, sigma, tensors, h, execution)?;
+    execution.fill(sheets, BRICK, |brick, sheets| {
         let near = Block::gather(batch, brick, distance);
-        if near.values.iter().all(|d| *d == 0.0) {
+        if !wanted[brick] || near.values.iter().all(|d| *d == 0.0) {
             return;
         }
         let tensors = &tensors[brick * BRICK * ENTRIES..][..BRICK * ENTRIES];
@@ -82,7 +120,7 @@ pub(crate) fn core_sheets(
                     &distance[brick * BRICK..][..BRICK],
                     &near.largest_near()[..],
                 );
-                find_sheets(&derivatives, tensors, label, (farthest, h), sheets);
+                find_sheets(&derivatives, tensors, label, (farthest, bent, h), sheets);
             },
         );
         if let Some(border) = border(brick) {
@@ -92,10 +130,7 @@ pub(crate) fn core_sheets(
                 }
             }
         }
-    })?;
-    let variance = |brick: usize| f64::from(sigma[brick] * sigma[brick]);
-    unshrink(batch, variance, &mut sheets, h, execution)?;
-    Ok(sheets)
+    })
 }
 
 /// Mean σ of a brick's voxels that have one; 0 where none has.
@@ -198,7 +233,7 @@ fn find_tensors(
     layers: &[Derivatives],
     distance: &[f32],
     border: Option<&Border>,
-    h: Vec3,
+    (most_bent, h): (f32, Vec3),
     tensors: &mut [f32],
 ) {
     let h = h.map(|h| h as f32);
@@ -224,7 +259,7 @@ fn find_tensors(
         let mut products = [[0.0; LAYER]; ENTRIES];
         for i in 0..LAYER {
             let e = vector_at(&sources, i);
-            let trust = trust(layer, i, e, h);
+            let trust = trust(layer, i, e, (most_bent, h));
             let e = [e[0] * trust, e[1] * trust, e[2] * trust];
             let zz = e[2] * e[2];
             let own = [
@@ -247,14 +282,14 @@ fn find_tensors(
 /// How far a voxel's own normal counts, 0 to 1: less the steeper the profile falls within the sheet, and
 /// the farther off the middle is, but where voxels are long the nearest may be half of that away.
 #[inline(always)]
-fn trust(layer: &Derivatives, i: usize, e: [f32; 3], h: [f32; 3]) -> f32 {
+fn trust(layer: &Derivatives, i: usize, e: [f32; 3], (most_bent, h): (f32, [f32; 3])) -> f32 {
     let length = dot(e, e).sqrt().max(f32::MIN_POSITIVE);
     let n = [e[0] / length, e[1] / length, e[2] / length];
     let (offset, tangential, bent) = step(layer, i, n);
     let most = TANGENTIAL * layer.sigma[i];
     let longer = 0.5 * (voxel_along(n, h) - 1.0);
     let share = (tangential / most).max(offset.abs() / (most + longer));
-    let clear = 1.0 - (bent / BENT).max(0.0);
+    let clear = 1.0 - (bent / most_bent).max(0.0);
     if share < 1.0 && clear > 0.0 {
         (1.0 - share * share) * clear
     } else {
@@ -296,7 +331,7 @@ fn find_sheets(
     layers: &[Derivatives],
     tensors: &[f32],
     (inside, near): (&[f32], &[f32]),
-    (farthest, h): (f32, Vec3),
+    (farthest, most_bent, h): (f32, f32, Vec3),
     sheets: &mut [Sheet],
 ) {
     let h = h.map(|h| h as f32);
@@ -319,7 +354,7 @@ fn find_sheets(
                 & close
                 & (offset.abs() <= most)
                 & (tangential <= TANGENTIAL * layer.sigma[i])
-                & (bent <= BENT)
+                & (bent <= most_bent)
                 & (middle - least <= VARIED * (largest - least));
             for (found, v) in found.iter_mut().zip([n[0], n[1], n[2], offset]) {
                 found[i] = if core { v } else { 0.0 };

@@ -133,4 +133,4 @@ falls_short!(virion_small, "Fig13A.vti", 0.13, 0.99);
 real!(virion_large, "Fig13B.vti", 0.13, 0.998);
 falls_short!(virion_larger, "Fig7.vti", 0.16, 0.99);
 real!(outer_membranes, "Fig11-OMM.vti", 0.085, 0.998);
-falls_short!(inner_membranes, "Fig11-IMM.vti", 0.09, 0.997);
+real!(inner_membranes, "Fig11-IMM.vti", 0.09, 0.997);

@@ -38,6 +38,25 @@ fn a_piece_without_a_surface_is_told_beside_one_that_has_it() {
     assert!(warnings[0].starts_with("Label 1: 1 of"), "{warnings:?}");
 }
 
+/// A bar of so many voxels along x, y, z.
+fn bar([nx, ny, nz]: [usize; 3]) -> Vec<u8> {
+    let inside = |i: usize| {
+        (8..8 + nx).contains(&(i % 40))
+            && (8..8 + ny).contains(&(i / 40 % 40))
+            && (8..8 + nz).contains(&(i / 40 / 40))
+    };
+    (0..40 * 40 * 40).map(|i| u8::from(inside(i))).collect()
+}
+
+#[test]
+fn a_ribbon_hardly_wider_than_thick_has_a_surface() {
+    for size in [[20, 3, 2], [2, 20, 3], [4, 3, 20], [5, 20, 3], [20, 4, 6]] {
+        let (mesh, warnings) = run(&bar(size), [40; 3]);
+        assert!(!mesh.triangles.is_empty(), "{size:?}");
+        assert!(warnings.is_empty(), "{size:?}: {warnings:?}");
+    }
+}
+
 #[test]
 fn a_single_slice_has_no_surface() {
     for dimensions in [[24, 24, 1], [24, 1, 24], [1, 24, 24]] {
