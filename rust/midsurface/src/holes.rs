@@ -47,14 +47,14 @@ const PIECE: usize = 4096;
 pub(crate) const PASSES: usize = 1;
 
 /// Closes the holes of a consistently wound 2-manifold that are none of the label's. `fraction` is
-/// the sheet fraction at the voxels. Returns the surface's fans.
+/// the sheet fraction at the voxels. Takes and returns the surface's fans.
 pub(crate) fn close_holes(
     label: &Label,
     surface: &mut Surface,
+    mut fans: Fans,
     fraction: &[f32],
     execution: &mut Execution,
 ) -> Result<Fans> {
-    let mut fans = Fans::new(&surface.triangles, surface.points.len())?;
     for _ in 0..ROUNDS {
         let holes = holes(label, surface, &fans, fraction, execution)?;
         let mut patches = Vec::new();
@@ -77,6 +77,36 @@ struct Patch {
     triangles: Vec<[u32; 3]>,
 }
 
+/// Whether each point is on a rim that is none of the label's, nor on the border of the volume.
+pub(crate) fn blind(
+    label: &Label,
+    surface: &Surface,
+    fans: &Fans,
+    fraction: &[f32],
+    execution: &mut Execution,
+) -> Result<Vec<bool>> {
+    let mut is_blind: Vec<bool> = zeros(surface.points.len())?;
+    execution.fill(&mut is_blind, PIECE, |piece, out| {
+        for (i, is_blind) in out.iter_mut().enumerate() {
+            let p = (PIECE * piece + i) as u32;
+            *is_blind = fans.is_boundary(&surface.triangles, p)
+                && is_within(label, surface, fraction, p)
+                && !label.on_border(surface.points[p as usize]).contains(&true);
+        }
+    })?;
+    Ok(is_blind)
+}
+
+/// Whether a point of the surface is well within its sheet, given the sheet fraction at the voxels.
+pub(crate) fn is_within(label: &Label, surface: &Surface, fraction: &[f32], p: u32) -> bool {
+    let sampler = Sampler {
+        directory: &label.batch.directories[surface.source[p as usize] as usize],
+        field: fraction,
+        h: label.h,
+    };
+    sampler.linear(surface.points[p as usize]) >= WITHIN
+}
+
 /// The rims of holes within the label, each as its points in the order of the boundary's half-edges,
 /// those of few points first.
 fn holes(
@@ -86,21 +116,7 @@ fn holes(
     fraction: &[f32],
     execution: &mut Execution,
 ) -> Result<Vec<Vec<u32>>> {
-    let mut is_blind: Vec<bool> = zeros(surface.points.len())?;
-    execution.fill(&mut is_blind, PIECE, |piece, out| {
-        for (i, is_blind) in out.iter_mut().enumerate() {
-            let p = PIECE * piece + i;
-            let sampler = Sampler {
-                directory: &label.batch.directories[surface.source[p] as usize],
-                field: fraction,
-                h: label.h,
-            };
-            let point = surface.points[p];
-            *is_blind = fans.is_boundary(&surface.triangles, p as u32)
-                && sampler.linear(point) >= WITHIN
-                && !label.on_border(point).contains(&true);
-        }
-    })?;
+    let mut is_blind = blind(label, surface, fans, fraction, execution)?;
     let after = |p: u32| {
         let mut leaving = fans.of(p).iter().copied();
         let on_rim = leaving.find(|&e| fans.twin(&surface.triangles, e) == NONE)?;
@@ -336,7 +352,7 @@ fn crossed(surface: &Surface, first: usize) -> Result<Vec<[u32; 2]>> {
 
 /// Removes the triangles that go; where these are of the surface itself, from before `first`, also
 /// the scraps that they leave.
-fn remove(surface: &mut Surface, goes: &[bool], first: usize) -> Result<()> {
+pub(crate) fn remove(surface: &mut Surface, goes: &[bool], first: usize) -> Result<()> {
     let mut among: Vec<bool> = zeros(surface.points.len())?;
     let sources = surface.source.iter().max().map_or(0, |s| *s as usize + 1);
     let mut is_cut: Vec<bool> = zeros(sources)?;

@@ -18,7 +18,7 @@
 //! | profile | mask → the mask smoothed as wide as it is thick | `profile.rs` |
 //! | sheets | profile → normal and offset of the sheet at every voxel near it | `crest.rs`, `extension.rs`, `settle.rs` |
 //! | contour | sheets → a surface through them, cut at the label's rims | `contour.rs`, `rim.rs`, `trim.rs`, `scraps.rs` |
-//! | holes | surface → surface without false holes, led on beyond the border of the volume for the while | `holes.rs`, `beyond.rs` |
+//! | holes | surface → surface without creases where sheets meet, nor false holes, led on beyond the border of the volume for the while | `creases.rs`, `holes.rs`, `beyond.rs` |
 //! | midway | surface → surface midway between both faces, led on to where sheets meet | `midway.rs`, `look.rs`, `fairing.rs`, `reach.rs` |
 //! | mesh | triangles → nearly equilateral ones, no terraces, no self-intersections | `remesh`, `terraces.rs`, `self_intersections.rs` |
 //!
@@ -54,6 +54,7 @@ mod cells;
 mod centre;
 mod components;
 mod contour;
+mod creases;
 mod crest;
 mod crossings;
 mod distance;

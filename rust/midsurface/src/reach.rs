@@ -20,7 +20,7 @@ use crate::midway::Label;
 /// Sheet fraction from which on a rim is a blind one.
 pub(crate) const WITHIN: f64 = 0.8;
 /// How far a blind rim looks ahead, and how far before what it sees it ends, work units.
-const AHEAD: f64 = 4.0;
+const AHEAD: f64 = 6.0;
 const APART: f64 = 0.1;
 /// Sheets cross the way if their normal is at least this cosine off a right angle to it, and other
 /// rims if their ways differ by more than this cosine's angle and are less than opposite.
@@ -406,7 +406,10 @@ mod tests {
     fn what_lies_behind_beside_or_too_far_is_not_met() {
         assert_eq!(meets([0.0; 3], [-1.0, 0.0, 0.0], ACROSS_X), None);
         assert_eq!(meets([0.0, 2.0, 2.0], [1.0, 0.0, 0.0], ACROSS_X), None);
-        assert_eq!(meets([-3.0, 0.0, 0.0], [1.0, 0.0, 0.0], ACROSS_X), None);
+        assert_eq!(
+            meets([1.9 - AHEAD, 0.0, 0.0], [1.0, 0.0, 0.0], ACROSS_X),
+            None
+        );
     }
 
     #[test]

@@ -4,8 +4,8 @@
 //! (`profile.rs`), the sheets at its crest (`crest.rs`), how they bend (`bending.rs`) and on to
 //! beyond the rims (`extension.rs`), a surface through them (`contour.rs`), wound the same way
 //! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
-//! (`weld.rs`), closed where it has holes within the label (`holes.rs`), led on beyond the border of
-//! the volume (`beyond.rs`), moved midway between both faces (`midway.rs`, `look.rs`), made fair where
+//! (`weld.rs`) and creases where sheets meet (`creases.rs`), closed where it has holes within the label
+//! (`holes.rs`), led on beyond the border of the volume (`beyond.rs`), moved midway between both faces (`midway.rs`, `look.rs`), made fair where
 //! these are not seen (`fairing.rs`), cut at the border, led on to where sheets meet (`reach.rs`),
 //! remeshed (`remesh`), rid of terraces (`terraces.rs`), moved a last little step (`midway.rs`) and rid
 //! of self-intersections (`self_intersections.rs`). How much of the progress a stage is given is how
@@ -16,6 +16,7 @@ use crate::beyond::{cut_at_border, lead_beyond};
 use crate::bricks::Batch;
 use crate::components::Part;
 use crate::contour;
+use crate::creases::{self, cut_creases};
 use crate::crest::{self, core_sheets};
 use crate::distance;
 use crate::error::{collected, push, zeros, Result};
@@ -98,7 +99,8 @@ pub(crate) fn ridge_surface(
     let distance = distance::distance(batch, h, execution)?;
     let sheets = find_sheets(batch, &distance, h, execution)?;
     let (surface, fraction) = cut_surface(batch, sheets, &distance, h, execution)?;
-    let passes = mask::PASSES + holes::PASSES + 2 + midway::PASSES + reach::PASSES;
+    let passes =
+        mask::PASSES + creases::PASSES + holes::PASSES + 2 + midway::PASSES + reach::PASSES;
     execution.stage("Moving midway", 0.49, 0.65, passes)?;
     let mask = Mask::new(batch, &distance, execution)?;
     let label = Label {
@@ -280,7 +282,8 @@ fn moved_midway(
     execution: &mut Execution,
 ) -> Result<Surface> {
     let (batch, h) = (label.batch, label.h);
-    let mut fans = close_holes(label, &mut surface, field, execution)?;
+    let mut fans = cut_creases(label, &mut surface, field, execution)?;
+    fans = close_holes(label, &mut surface, fans, field, execution)?;
     let mut fraction = values(batch, &surface, field, h, execution)?;
     for from in lead_beyond(&mut surface, &fans, label.last())? {
         let of_point = fraction[from as usize];

@@ -3,6 +3,7 @@
 
 #[path = "../extraction/image_file.rs"]
 mod image_file;
+mod junctions;
 mod phantoms_known;
 mod real_volumes;
 mod warnings;

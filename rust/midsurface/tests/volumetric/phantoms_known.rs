@@ -4,7 +4,7 @@
 //! `SEED=17 cargo test …` tries other positions, orientations and sizes than the usual ones.
 
 use midsurface::Grid;
-use phantoms::{judge, trials};
+use phantoms::{judge, trials, Phantom, Report, Trial};
 
 use crate::ridge_surface;
 
@@ -17,10 +17,22 @@ fn seed() -> u64 {
 }
 
 fn assert_must(name: &str, noisy: bool) {
-    let trials = trials();
-    let trial = trials.iter().find(|trial| trial.name == name);
+    let (trial, phantom, report) = judged(name, seed(), noisy);
+    let (missed, _) = trial.verdict(&report, &phantom, noisy);
+    assert!(
+        missed.is_empty(),
+        "seed {}: {}\n{report}",
+        seed(),
+        missed.join(", ")
+    );
+}
+
+/// A line of the table, with the phantom of this seed and what is to be said of its mesh.
+pub(crate) fn judged(name: &str, seed: u64, noisy: bool) -> (Trial, Phantom, Report) {
+    let mut trials = trials().into_iter();
+    let trial = trials.find(|trial| trial.name == name);
     let trial = trial.expect("a line of the table");
-    let phantom = trial.phantom(seed(), noisy);
+    let phantom = trial.phantom(seed, noisy);
     let frame = &phantom.frame;
     let grid = Grid {
         dimensions: frame.dimensions,
@@ -31,13 +43,7 @@ fn assert_must(name: &str, noisy: bool) {
     };
     let mesh = ridge_surface(&phantom.labels, grid);
     let report = judge(&mesh.points, &mesh.triangles, &phantom);
-    let (missed, _) = trial.verdict(&report, &phantom, noisy);
-    assert!(
-        missed.is_empty(),
-        "seed {}: {}\n{report}",
-        seed(),
-        missed.join(", ")
-    );
+    (trial, phantom, report)
 }
 
 macro_rules! must {
