@@ -266,7 +266,9 @@ fn cut_surface(
     let fraction = sheet_fraction(batch, &sheets, distance, h, execution)?;
     drop(sheets);
     let at_points = values(batch, &surface, &fraction, h, execution)?;
-    trim(&mut surface, &at_points)?;
+    let last = batch.directories.first();
+    let last = last.map_or([0.0; 3], |d| last_voxel(d.dimensions, h));
+    trim(&mut surface, &at_points, last)?;
     drop_scraps(&mut surface, |_| true)?;
     weld(&mut surface, execution)?;
     execution.pass_done()?;

@@ -4,11 +4,12 @@
 //! sheet fraction (`rim.rs`) is ½, between the points, so that rims and holes are where the data
 //! put them and not on the grid. What noise alone makes is left: a region below ½ is a hole only
 //! where its fraction falls far enough, and a region above ½ is a piece of sheet only where its
-//! fraction rises far enough (hysteresis, as in Canny 1986).
+//! fraction rises far enough (hysteresis, as in Canny 1986). A region below ½ that comes to the end of
+//! the contour is no hole: it lies beyond a rim, and only the contour ends before it falls farther.
 
 use crate::components::DisjointSets;
 use crate::error::{check_count, collected, filled, push, reserved, zeros, Result};
-use crate::grid::{along, sub};
+use crate::grid::{along, sub, Vec3};
 use crate::halfedge::{ends, Edges};
 use crate::manifold::{split_points_among, Surface};
 
@@ -32,9 +33,9 @@ enum Side {
     Cut,
 }
 
-/// Cuts `surface` where `fraction`, given at its points, is ½.
-pub(crate) fn trim(surface: &mut Surface, fraction: &[f64]) -> Result<()> {
-    let above = above(surface, fraction)?;
+/// Cuts `surface` where `fraction`, given at its points, is ½. The volume's last voxel is at `last`.
+pub(crate) fn trim(surface: &mut Surface, fraction: &[f64], last: Vec3) -> Result<()> {
+    let above = above(surface, fraction, last)?;
     if above.iter().all(|&a| a) {
         return Ok(());
     }
@@ -144,7 +145,7 @@ fn snap(
 }
 
 /// Whether each point stays.
-fn above(surface: &Surface, fraction: &[f64]) -> Result<Vec<bool>> {
+fn above(surface: &Surface, fraction: &[f64], last: Vec3) -> Result<Vec<bool>> {
     let mut above = collected(fraction.iter().map(|f| *f >= RIM))?;
     let certain = |f: &f64| *f >= SHEET || *f <= HOLE;
     let mut certain = collected(fraction.iter().map(certain))?;
@@ -160,10 +161,38 @@ fn above(surface: &Surface, fraction: &[f64]) -> Result<Vec<bool>> {
     for p in 0..above.len() {
         certain[regions.find(p)] |= certain[p];
     }
+    let root_is_certain = |p: usize| certain[regions.find(p)];
+    let doubtful = collected((0..above.len()).map(root_is_certain).map(|c| !c))?;
+    for p in at_end(surface, |p| doubtful[p] && !above[p], last)? {
+        certain[regions.find(p)] = true;
+    }
     for p in 0..above.len() {
         above[p] ^= !certain[regions.find(p)];
     }
     Ok(above)
+}
+
+/// Points of edges where a contour of points below ½ ends, other than on the border of the volume.
+fn at_end(surface: &Surface, below: impl Fn(usize) -> bool, last: Vec3) -> Result<Vec<usize>> {
+    let triangles = &surface.triangles;
+    let any_below = |t: &u32| triangles[*t as usize].iter().any(|&p| below(p as usize));
+    let near = collected((0..triangles.len() as u32).filter(any_below))?;
+    if near.is_empty() {
+        return Ok(Vec::new());
+    }
+    let edges = Edges::of_triangles(triangles, &near, surface.points.len())?;
+    let on_border = |[p, q]: [usize; 2]| {
+        let [p, q] = [p, q].map(|p| surface.points[p]);
+        (0..3).any(|a| p[a].max(q[a]) <= 0.0 || p[a].min(q[a]) >= last[a])
+    };
+    let mut found = Vec::new();
+    for (a, b, group) in edges.groups() {
+        let edge = [a, b].map(|p| p as usize);
+        if group.len() == 1 && edge.into_iter().all(&below) && !on_border(edge) {
+            push(&mut found, edge[0])?;
+        }
+    }
+    Ok(found)
 }
 
 /// Appends what is left of the triangle with this first half-edge.
@@ -195,5 +224,74 @@ fn keep(first: u32, side: &[Side], cut: &[u32], triangles: &[[u32; 3]], kept: &m
                 kept.push([corner(k + 1), corner(k + 2), new(k + 2)]);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{cross, length};
+
+    const SIDE: u32 = 12;
+
+    /// What is left of a flat square, its fraction as given, and of its area.
+    fn trimmed(fraction: impl Fn(u32, u32) -> f64, last: Vec3) -> (Surface, f64) {
+        let mut surface = Surface::default();
+        let mut of_points = Vec::new();
+        for (j, i) in (0..=SIDE).flat_map(|j| (0..=SIDE).map(move |i| (j, i))) {
+            surface.points.push([f64::from(i), f64::from(j), 5.0]);
+            surface.source.push(0);
+            of_points.push(fraction(i, j));
+        }
+        for (j, i) in (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (j, i))) {
+            let a = j * (SIDE + 1) + i;
+            let [b, c, d] = [a + 1, a + SIDE + 2, a + SIDE + 1];
+            surface.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+        trim(&mut surface, &of_points, last).unwrap();
+        let area = surface.triangles.iter().map(|t| {
+            let [a, b, c] = t.map(|p| surface.points[p as usize]);
+            0.5 * length(cross(sub(b, a), sub(c, a)))
+        });
+        let area = area.sum();
+        (surface, area)
+    }
+
+    const FAR: Vec3 = [100.0; 3];
+    const WHOLE: f64 = (SIDE * SIDE) as f64;
+
+    #[test]
+    fn a_shallow_dip_is_no_hole() {
+        let is_in_dip = |i, j| (5..8).contains(&i) && (5..8).contains(&j);
+        let (_, area) = trimmed(|i, j| if is_in_dip(i, j) { 0.35 } else { 1.0 }, FAR);
+        assert_eq!(area, WHOLE);
+    }
+
+    #[test]
+    fn where_the_contour_ends_in_a_dip_it_is_cut() {
+        let fraction = [1.0, 0.65, 0.35];
+        let beyond = |i: u32, _| fraction[(i.max(8) - 8).min(2) as usize];
+        let (surface, area) = trimmed(beyond, FAR);
+        assert!((area - 9.5 * f64::from(SIDE)).abs() < 1e-9, "{area}");
+        assert!(surface
+            .triangles
+            .iter()
+            .flatten()
+            .all(|&p| surface.points[p as usize][0] < 9.5 + 1e-9));
+    }
+
+    #[test]
+    fn where_the_volume_ends_in_a_dip_it_stays() {
+        let beyond = |i: u32, j: u32| {
+            if i > 9 && (4..9).contains(&j) {
+                0.35
+            } else {
+                1.0
+            }
+        };
+        let (_, area) = trimmed(beyond, [f64::from(SIDE), 100.0, 100.0]);
+        assert_eq!(area, WHOLE);
+        let (_, area) = trimmed(beyond, FAR);
+        assert!(area < WHOLE - 8.0, "{area}");
     }
 }
