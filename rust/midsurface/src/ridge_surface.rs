@@ -60,7 +60,7 @@ const FILTERS: Filters = Filters {
         passband: 0.1,
         degree: 7,
     },
-    near_lattice_planes: Some(STRONG),
+    strong: Some(STRONG),
 };
 /// The lattice planes that count: terraces along others are lower. Nearness grows from 11°, where
 /// terraces are five voxels long, to 6° and ten.

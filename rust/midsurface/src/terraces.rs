@@ -8,7 +8,8 @@
 //! neighbours by the inverse square of their distance, since where a sheet leans the slices' lines
 //! lie far apart; on a boundary it follows the boundary. A lower passband would remove longer
 //! terraces, too, but takes the bends of real membranes for such: what is nearly parallel to a
-//! lattice plane, where terraces are long, may have a filter of its own.
+//! lattice plane, where terraces are long, may have a filter of its own, and so may rims, which are
+//! rough: points on them have two neighbours in place of six, and see no faces of the label.
 
 use crate::buckets::{self, Buckets};
 use crate::error::{collected, zeros, Result};
@@ -30,7 +31,7 @@ pub(crate) struct LowPass {
 /// z all slices have the same terraces.
 pub(crate) const OF_LINES: Filters = Filters {
     usual: STRONG,
-    near_lattice_planes: Some(LowPass {
+    strong: Some(LowPass {
         passband: 0.0125,
         degree: 48,
     }),
@@ -45,8 +46,9 @@ pub(crate) const STRONG: LowPass = LowPass {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Filters {
     pub usual: LowPass,
-    /// Where the sheet is nearly parallel to a lattice plane; `None`: the usual one.
-    pub near_lattice_planes: Option<LowPass>,
+    /// Where the sheet is nearly parallel to a lattice plane, and on boundaries where points move
+    /// freely; `None`: the usual one.
+    pub strong: Option<LowPass>,
 }
 
 /// No point moves by more than this share of its line's edges: nearly half a voxel.
@@ -63,7 +65,7 @@ const PREPARING: usize = halfedge::TWIN_PASSES + buckets::PASSES;
 impl Filters {
     /// Passes over the points that [`flatten_terraces`] makes, for its progress.
     pub const fn passes(&self) -> usize {
-        let more = match self.near_lattice_planes {
+        let more = match self.strong {
             Some(filter) => 2 * filter.degree,
             None => 0,
         };
@@ -75,7 +77,7 @@ impl Filters {
     pub fn on_spacing(self, h: Vec3) -> Self {
         Self {
             usual: self.usual.on_spacing(h),
-            near_lattice_planes: self.near_lattice_planes.map(|f| f.on_spacing(h)),
+            strong: self.strong.map(|f| f.on_spacing(h)),
         }
     }
 }
@@ -160,7 +162,7 @@ pub(crate) fn flatten_terraces(
     let rings = neighbours.rings(lines)?;
     let moves = moves(
         points,
-        normals,
+        (normals, lines),
         (&neighbours, &rings),
         (filters, lattice),
         execution,
@@ -190,7 +192,7 @@ fn within(normal: Vec3, across: Vec3) -> Vec3 {
 /// How far the filters would move each point along its normal.
 fn moves(
     points: &[Vec3],
-    normals: &[Vec3],
+    (normals, lines): (&[Vec3], &[LineOfPoint]),
     (neighbours, rings): (&Neighbours, &[u8]),
     (filters, lattice): (Filters, &[LatticePlane]),
     execution: &mut Execution,
@@ -205,9 +207,13 @@ fn moves(
         }
     })?;
     let mut moves = twiced(&heights, neighbours, filters.usual, execution)?;
-    if let Some(filter) = filters.near_lattice_planes {
+    if let Some(filter) = filters.strong {
         let others = twiced(&heights, neighbours, filter, execution)?;
         for (p, (own, other)) in moves.iter_mut().zip(others).enumerate() {
+            if neighbours.is_rim(p, lines) {
+                *own = other;
+                continue;
+            }
             let share = f64::from(rings[p]) / f64::from(RINGS);
             let near = lattice
                 .iter()
@@ -329,6 +335,11 @@ impl Neighbours {
     fn of(&self, p: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let list = self.list.of(p).iter();
         list.map(|&(q, w)| (q as usize, f64::from(w)))
+    }
+
+    /// Whether a point is on a boundary where it moves freely.
+    fn is_rim(&self, p: usize, lines: &[LineOfPoint]) -> bool {
+        self.boundary[p] && matches!(lines[p].on_boundary, OnBoundary::Freely)
     }
 
     /// How much higher than at a point a field is at its neighbours: −K of it.

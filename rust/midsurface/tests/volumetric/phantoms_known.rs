@@ -133,7 +133,7 @@ must!(
     "sphere 1 thick, corners",
     NOISY
 );
-falls_short!(
+must!(
     disk_with_a_hole_1_thick_clean,
     "disk with a hole, 1 thick",
     CLEAN
