@@ -23,8 +23,9 @@ use crate::touching::{touch, TOUCHING};
 /// most steps: in all about half of the way.
 const STEP: f64 = 0.12;
 const STEPS: usize = 6;
-/// Times that triangles are cut away, at most.
-const CUTS: usize = 8;
+/// Times that triangles are cut away, at most: mostly once or twice, but a rim that is crumpled all along
+/// takes more.
+const CUTS: usize = 24;
 /// How far from a rim that is drawn back others may begin to touch, in lengths of an edge.
 const REACH: f64 = 1.5;
 /// Rings of points beside a rim whose triangles are looked at, too: what is led on to where sheets meet
