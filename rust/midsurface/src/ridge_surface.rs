@@ -4,12 +4,12 @@
 //! (`profile.rs`), the sheets at its crest (`crest.rs`), how they bend (`bending.rs`) and on to
 //! beyond the rims (`extension.rs`), a surface through them (`contour.rs`), wound the same way
 //! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
-//! (`weld.rs`) and creases where sheets meet (`creases.rs`), closed where it has holes within the label
-//! (`holes.rs`), led on beyond the border of the volume (`beyond.rs`), moved midway between both faces (`midway.rs`, `look.rs`), made fair where
-//! these are not seen (`fairing.rs`), cut at the border, led on to where sheets meet (`reach.rs`),
-//! remeshed (`remesh`), rid of terraces (`terraces.rs`), moved a last little step (`midway.rs`) and rid
-//! of self-intersections (`self_intersections.rs`). How much of the progress a stage is given is how
-//! long it took on the membranes of real cells.
+//! (`weld.rs`) and creases where sheets meet (`creases.rs`), closed where it has holes within the
+//! label (`holes.rs`), led on beyond the border of the volume (`beyond.rs`), moved midway between both
+//! faces (`midway.rs`, `look.rs`), made fair where these are not seen (`fairing.rs`), cut at the border,
+//! led on to where sheets meet (`reach.rs`), remeshed (`remesh`), rid of terraces (`terraces.rs`),
+//! moved a last little step (`midway.rs`) and rid of self-intersections (`self_intersections.rs`). How
+//! much of the progress a stage is given is how long it took on the membranes of real cells.
 
 use crate::bending;
 use crate::beyond::{cut_at_border, lead_beyond};
