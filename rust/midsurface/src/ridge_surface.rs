@@ -179,11 +179,14 @@ fn flatten(
     let h = grid.work_spacing();
     let last = last_voxel(grid.dimensions, h);
     let point = |p: &Vec3| {
-        let mut borders = (0..3).filter(|&a| p[a] <= 0.0 || p[a] >= last[a]);
-        let on_boundary = match (borders.next(), borders.next()) {
-            (None, _) => OnBoundary::Freely,
-            (Some(a), None) => {
-                OnBoundary::Within(std::array::from_fn(|k| f64::from(u8::from(k == a))))
+        let on_border = |a: &usize| p[*a] <= 0.0 || p[*a] >= last[*a];
+        let axis = |a: usize| std::array::from_fn(|k| f64::from(u8::from(k == a)));
+        let on_boundary = match (0..3).filter(on_border).count() {
+            0 => OnBoundary::Freely,
+            1 => OnBoundary::Within((0..3).find(on_border).map_or([0.0; 3], axis)),
+            2 => {
+                let free = (0..3).find(|a| !on_border(a));
+                OnBoundary::Along(free.map_or([0.0; 3], axis))
             }
             _ => OnBoundary::Stays,
         };

@@ -119,6 +119,8 @@ pub(crate) enum OnBoundary {
     Stays,
     /// Within the plane across this unit vector.
     Within(Vec3),
+    /// Along this unit vector only.
+    Along(Vec3),
     /// Along its normal, as all others do.
     Freely,
 }
@@ -170,6 +172,7 @@ pub(crate) fn flatten_terraces(
     for (i, point) in points.iter_mut().enumerate() {
         let way = match lines[i].on_boundary {
             OnBoundary::Within(across) if neighbours.boundary[i] => within(normals[i], across),
+            OnBoundary::Along(line) if neighbours.boundary[i] => along_line(normals[i], line),
             _ => normals[i],
         };
         if lines[i].at_end && !neighbours.boundary[i] {
@@ -187,6 +190,12 @@ pub(crate) fn flatten_terraces(
 fn within(normal: Vec3, across: Vec3) -> Vec3 {
     let within = along(normal, -dot(normal, across), across);
     within.map(|v| v / dot(within, within).max(0.25))
+}
+
+/// As [`within`], along a line.
+fn along_line(normal: Vec3, line: Vec3) -> Vec3 {
+    let share = dot(normal, line);
+    line.map(|v| v * share / (share * share).max(0.25))
 }
 
 /// How far the filters would move each point along its normal.
