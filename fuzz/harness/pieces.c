@@ -91,7 +91,7 @@ static midsurface_status write_fields(
   return status;
 }
 
-static int work(void* of_process, const midsurface_exchange* exchange)
+static void work(void* of_process, const midsurface_exchange* exchange)
 {
   process* own = of_process;
   own->options.user = &own->calls_until_cancel;
@@ -128,7 +128,6 @@ static int work(void* of_process, const midsurface_exchange* exchange)
     consume_mesh(mesh);
   }
   midsurface_polylines_free(polylines);
-  return 0;
 }
 
 /** Where the whole has a mesh, the pieces have all of it. */

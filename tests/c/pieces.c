@@ -38,7 +38,7 @@ static void zip(Process* process, const midsurface_exchange* exchange)
   midsurface_polylines_free(lines);
 }
 
-static int work(void* argument, const midsurface_exchange* exchange)
+static void work(void* argument, const midsurface_exchange* exchange)
 {
   Process* process = argument;
   const midsurface_options options = midsurface_options_default();
@@ -65,7 +65,6 @@ static int work(void* argument, const midsurface_exchange* exchange)
     process->status =
       midsurface_extract_piece(process->piece, exchange, &options, &process->mesh, &process->error);
   }
-  return 0;
 }
 
 static void run_both(Process processes[2])

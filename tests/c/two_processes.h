@@ -4,8 +4,8 @@
 
 #include "midsurface.h"
 
-/* What a process does; the result is not looked at. */
-typedef int Work(void* of_process, const midsurface_exchange* exchange);
+/* What a process does. */
+typedef void Work(void* of_process, const midsurface_exchange* exchange);
 
 /* Lets two processes work, each on its own, until both are done; false where that cannot be. */
 bool run_two(Work* work, void* of_processes[2]);

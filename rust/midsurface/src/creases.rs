@@ -16,12 +16,13 @@ use crate::cells::{bounds, near, Cells};
 use crate::components::DisjointSets;
 use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, dot, length, sub, unit, Vec3};
+use crate::grid::{dot, length, sub, unit, Vec3};
 use crate::halfedge::{ends, Fans, NONE};
 use crate::holes::{blind, is_within, remove};
 use crate::manifold::Surface;
 use crate::midway::Label;
 use crate::normals::normal_of_fan;
+use crate::reach::away;
 use crate::region::Region;
 
 /// Rings of points around blind rims that are looked at.
@@ -111,22 +112,11 @@ fn reached_rims(
     let mut reached = Vec::new();
     for &point in blind {
         if is_reached[rims.find(point as usize)] {
-            let way = Some(outward(surface, fans, point));
+            let way = Some(unit(away(surface, fans, point)));
             push(&mut reached, Seed { point, way })?;
         }
     }
     Ok(reached)
-}
-
-/// Out of the surface at a point of its boundary: away from the two rings of points behind it.
-fn outward(surface: &Surface, fans: &Fans, p: u32) -> Vec3 {
-    let around = |p: u32| {
-        let corners = fans.of(p).iter();
-        corners.flat_map(|&e| surface.triangles[e as usize / 3])
-    };
-    let from = surface.points[p as usize];
-    let away = |way, q: u32| along(way, 1.0, sub(from, surface.points[q as usize]));
-    unit(around(p).flat_map(around).fold([0.0; 3], away))
 }
 
 /// Which triangles of the same part have a corner no farther than this from a seed, ahead of it if

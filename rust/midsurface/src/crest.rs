@@ -55,13 +55,13 @@ pub(crate) fn core_sheets(
     let sigma = execution.collect(bricks, |brick| mean_sigma(profile, batch, brick))?;
     let mut sheets: Vec<Sheet> = zeros(bricks * BRICK)?;
     let label = (batch, distance, farthest, h);
-    let mut wanted = filled(true, bricks)?;
-    for bent in [BENT, RIBBON] {
-        if wanted.contains(&true) {
-            let wanted = (wanted.as_slice(), bent);
-            find(label, profile, &sigma, wanted, &mut sheets, execution)?;
-        }
-        wanted = bricks_without_core(batch, &sheets)?;
+    let mut find = |wanted: &[bool], bent, sheets: &mut [Sheet]| {
+        find(label, profile, &sigma, (wanted, bent), sheets, execution)
+    };
+    find(&filled(true, bricks)?, BENT, &mut sheets)?;
+    let ribbons = bricks_without_core(batch, &sheets)?;
+    if ribbons.contains(&true) {
+        find(&ribbons, RIBBON, &mut sheets)?;
     }
     let variance = |brick: usize| f64::from(sigma[brick] * sigma[brick]);
     unshrink(batch, variance, &mut sheets, h, execution)?;
@@ -105,7 +105,7 @@ fn find(
             },
         );
     })?;
-    let tensors = smooth_tensors(batch, sigma, tensors, h, execution)?;
+    let tensors = smooth_tensors(batch, (sigma, wanted), tensors, h, execution)?;
     execution.fill(sheets, BRICK, |brick, sheets| {
         let near = Block::gather(batch, brick, distance);
         if !wanted[brick] || near.values.iter().all(|d| *d == 0.0) {
@@ -297,10 +297,10 @@ fn trust(layer: &Derivatives, i: usize, e: [f32; 3], (most_bent, h): (f32, [f32;
     }
 }
 
-/// Smooths the tensors with a ρ for each brick that goes with its σ.
+/// Smooths the tensors of the `wanted` bricks with a ρ for each that goes with its σ.
 fn smooth_tensors(
     batch: &Batch,
-    sigma: &[f32],
+    (sigma, wanted): (&[f32], &[bool]),
     tensors: Vec<f32>,
     h: Vec3,
     execution: &mut Execution,
@@ -319,7 +319,7 @@ fn smooth_tensors(
     let kernel_of = |brick: usize| {
         let rho = sigma[brick].clamp(least, most);
         let step = ((rho / least).log2() / RHO_STEP.log2()).round();
-        Some(&kernels[step as usize])
+        wanted[brick].then_some(&kernels[step as usize])
     };
     let mut scratch = zeros(tensors.len())?;
     smooth_some(batch, kernel_of, tensors, &mut scratch, execution)

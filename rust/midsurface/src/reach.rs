@@ -177,18 +177,21 @@ fn outward(surface: &Surface, fans: &Fans, own: &Blind) -> Vec3 {
         return [0.0; 3];
     }
     let p = own.point;
+    let way = away(surface, fans, p);
+    let [before, after] = beside(surface, fans, p).map(|q| surface.points[q.unwrap_or(p) as usize]);
+    let rim = unit(sub(after, before));
+    unit(along(way, -dot(way, rim), rim))
+}
+
+/// Away from the two rings of points around a point: out of the surface at its boundary.
+pub(crate) fn away(surface: &Surface, fans: &Fans, p: u32) -> Vec3 {
     let around = |p: u32| {
         let corners = fans.of(p).iter();
         corners.flat_map(|&e| surface.triangles[e as usize / 3])
     };
     let from = surface.points[p as usize];
-    let mut way = [0.0; 3];
-    for q in around(p).flat_map(around) {
-        way = along(way, 1.0, sub(from, surface.points[q as usize]));
-    }
-    let [before, after] = beside(surface, fans, p).map(|q| surface.points[q.unwrap_or(p) as usize]);
-    let rim = unit(sub(after, before));
-    unit(along(way, -dot(way, rim), rim))
+    let step = |way, q: u32| along(way, 1.0, sub(from, surface.points[q as usize]));
+    around(p).flat_map(around).fold([0.0; 3], step)
 }
 
 /// How far each point of the blind rims goes.

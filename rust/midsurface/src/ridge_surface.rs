@@ -60,7 +60,7 @@ const FILTERS: Filters = Filters {
         passband: 0.1,
         degree: 7,
     },
-    strong: Some(STRONG),
+    stronger: Some(STRONG),
 };
 /// The lattice planes that count: terraces along others are lower. Nearness grows from 11°, where
 /// terraces are five voxels long, to 6° and ten.
@@ -98,7 +98,7 @@ pub(crate) fn ridge_surface(
     let batch = &Batch::new(parts, grid.dimensions)?;
     let distance = distance::distance(batch, h, execution)?;
     let sheets = find_sheets(batch, &distance, h, execution)?;
-    let (surface, fraction) = cut_surface(batch, sheets, &distance, h, execution)?;
+    let (surface, fraction) = cut_surface(batch, sheets, &distance, grid, execution)?;
     let passes =
         mask::PASSES + creases::PASSES + holes::PASSES + 2 + midway::PASSES + reach::PASSES;
     execution.stage("Moving midway", 0.49, 0.65, passes)?;
@@ -179,15 +179,12 @@ fn flatten(
     let h = grid.work_spacing();
     let last = last_voxel(grid.dimensions, h);
     let point = |p: &Vec3| {
-        let on_border = |a: &usize| p[*a] <= 0.0 || p[*a] >= last[*a];
-        let axis = |a: usize| std::array::from_fn(|k| f64::from(u8::from(k == a)));
-        let on_boundary = match (0..3).filter(on_border).count() {
+        let on_border: [bool; 3] = std::array::from_fn(|a| p[a] <= 0.0 || p[a] >= last[a]);
+        let axis = |of: bool| on_border.map(|on| f64::from(u8::from(on == of)));
+        let on_boundary = match on_border.iter().filter(|on| **on).count() {
             0 => OnBoundary::Freely,
-            1 => OnBoundary::Within((0..3).find(on_border).map_or([0.0; 3], axis)),
-            2 => {
-                let free = (0..3).find(|a| !on_border(a));
-                OnBoundary::Along(free.map_or([0.0; 3], axis))
-            }
+            1 => OnBoundary::Within(axis(true)),
+            2 => OnBoundary::Along(axis(false)),
             _ => OnBoundary::Stays,
         };
         LineOfPoint {
@@ -258,9 +255,10 @@ fn cut_surface(
     batch: &Batch,
     sheets: Vec<Sheet>,
     distance: &[f32],
-    h: Vec3,
+    grid: &Grid,
     execution: &mut Execution,
 ) -> Result<(Surface, Vec<f32>)> {
+    let h = grid.work_spacing();
     let passes = contour::PASSES + manifold::PASSES;
     execution.stage("Joining sheets", 0.37, 0.45, passes)?;
     let mut surface = contour::contour(batch, &sheets, h, execution)?;
@@ -269,9 +267,7 @@ fn cut_surface(
     let fraction = sheet_fraction(batch, &sheets, distance, h, execution)?;
     drop(sheets);
     let at_points = values(batch, &surface, &fraction, h, execution)?;
-    let last = batch.directories.first();
-    let last = last.map_or([0.0; 3], |d| last_voxel(d.dimensions, h));
-    trim(&mut surface, &at_points, last)?;
+    trim(&mut surface, &at_points, last_voxel(grid.dimensions, h))?;
     drop_scraps(&mut surface, |_| true)?;
     weld(&mut surface, execution)?;
     execution.pass_done()?;

@@ -31,7 +31,7 @@ pub(crate) struct LowPass {
 /// z all slices have the same terraces.
 pub(crate) const OF_LINES: Filters = Filters {
     usual: STRONG,
-    strong: Some(LowPass {
+    stronger: Some(LowPass {
         passband: 0.0125,
         degree: 48,
     }),
@@ -48,7 +48,7 @@ pub(crate) struct Filters {
     pub usual: LowPass,
     /// Where the sheet is nearly parallel to a lattice plane, and on boundaries where points move
     /// freely; `None`: the usual one.
-    pub strong: Option<LowPass>,
+    pub stronger: Option<LowPass>,
 }
 
 /// No point moves by more than this share of its line's edges: nearly half a voxel.
@@ -65,7 +65,7 @@ const PREPARING: usize = halfedge::TWIN_PASSES + buckets::PASSES;
 impl Filters {
     /// Passes over the points that [`flatten_terraces`] makes, for its progress.
     pub const fn passes(&self) -> usize {
-        let more = match self.strong {
+        let more = match self.stronger {
             Some(filter) => 2 * filter.degree,
             None => 0,
         };
@@ -77,7 +77,7 @@ impl Filters {
     pub fn on_spacing(self, h: Vec3) -> Self {
         Self {
             usual: self.usual.on_spacing(h),
-            strong: self.strong.map(|f| f.on_spacing(h)),
+            stronger: self.stronger.map(|f| f.on_spacing(h)),
         }
     }
 }
@@ -216,7 +216,7 @@ fn moves(
         }
     })?;
     let mut moves = twiced(&heights, neighbours, filters.usual, execution)?;
-    if let Some(filter) = filters.strong {
+    if let Some(filter) = filters.stronger {
         let others = twiced(&heights, neighbours, filter, execution)?;
         for (p, (own, other)) in moves.iter_mut().zip(others).enumerate() {
             if neighbours.is_rim(p, lines) {

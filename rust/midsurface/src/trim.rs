@@ -161,9 +161,9 @@ fn above(surface: &Surface, fraction: &[f64], last: Vec3) -> Result<Vec<bool>> {
     for p in 0..above.len() {
         certain[regions.find(p)] |= certain[p];
     }
-    let root_is_certain = |p: usize| certain[regions.find(p)];
-    let doubtful = collected((0..above.len()).map(root_is_certain).map(|c| !c))?;
-    for p in at_end(surface, |p| doubtful[p] && !above[p], last)? {
+    let may_be_kept = |p: usize| !above[p] && !certain[regions.find(p)];
+    let in_dip = collected((0..above.len()).map(may_be_kept))?;
+    for p in at_end(surface, |p| in_dip[p], last)? {
         certain[regions.find(p)] = true;
     }
     for p in 0..above.len() {
