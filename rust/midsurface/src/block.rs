@@ -7,13 +7,10 @@ use crate::grid::Vec3;
 /// Voxels along a block's edge.
 pub(crate) const SIDE: usize = EDGE + 2;
 
-/// A value for every voxel of one layer of a brick: shape (8, 8), x fastest.
-pub(crate) type Layer = [f32; LAYER];
-
 /// A value for every voxel of a row along x of a brick.
 pub(crate) type Row = [f32; EDGE];
 
-/// A vector at place i of its entries' layers or rows. Written out, since the `map` of an array is not
+/// A vector at place i of its entries' rows. Written out, since the `map` of an array is not
 /// always inlined, and a loop with it then takes one voxel at a time.
 #[inline(always)]
 pub(crate) fn vector_at<L: AsRef<[f32]>>(entries: &[L; 3], i: usize) -> [f32; 3] {
@@ -21,7 +18,7 @@ pub(crate) fn vector_at<L: AsRef<[f32]>>(entries: &[L; 3], i: usize) -> [f32; 3]
     [x.as_ref()[i], y.as_ref()[i], z.as_ref()[i]]
 }
 
-/// A symmetric matrix at place i of its entries' layers or rows, as [`vector_at`].
+/// A symmetric matrix at place i of its entries' rows, as [`vector_at`].
 #[inline(always)]
 pub(crate) fn matrix_at<L: AsRef<[f32]>>(entries: &[L; 6], i: usize) -> Symmetric<f32> {
     let [xx, yy, zz, xy, xz, yz] = entries;
@@ -44,16 +41,17 @@ impl<T: Copy + Default> Block<T> {
             let Some(brick) = neighbour(directory, place, side) else {
                 continue;
             };
+            let own = &field[brick * BRICK..][..BRICK];
             let [x, y, z] = side.map(shared);
             for k in 0..z.count {
                 for j in 0..y.count {
                     let to = ((z.to + k) * SIDE + y.to + j) * SIDE + x.to;
-                    let from = brick * BRICK + (z.from + k) * LAYER + (y.from + j) * EDGE + x.from;
+                    let from = (z.from + k) * LAYER + (y.from + j) * EDGE + x.from;
                     if x.count == EDGE {
                         // A copy of a length that is known is no call.
-                        values[to..to + EDGE].copy_from_slice(&field[from..from + EDGE]);
+                        values[to..to + EDGE].copy_from_slice(&own[from..from + EDGE]);
                     } else {
-                        values[to] = field[from];
+                        values[to] = own[from];
                     }
                 }
             }
@@ -157,12 +155,6 @@ impl Block<f32> {
         });
     }
 
-    /// The field in layer z of the brick.
-    #[inline(always)]
-    pub fn layer(&self, z: usize) -> Layer {
-        std::array::from_fn(|i| self.values[row(i / EDGE, z) + i % EDGE])
-    }
-
     /// The field in row y of layer z of the brick.
     #[inline(always)]
     pub fn row(&self, y: usize, z: usize) -> &Row {
@@ -172,21 +164,6 @@ impl Block<f32> {
     #[inline(always)]
     fn row_at(&self, first: usize) -> &Row {
         self.values[first..].first_chunk().unwrap_or(&[0.0; EDGE])
-    }
-
-    /// Gradient and Hessian in layer z of the brick, by central differences.
-    #[inline(always)]
-    pub fn derivatives(&self, z: usize, h: Vec3) -> ([Layer; 3], Symmetric<Layer>) {
-        let mut gradient = [[0.0; LAYER]; 3];
-        let mut hessian = [[0.0; LAYER]; 6];
-        for y in 0..EDGE {
-            let (first, second) = self.row_derivatives(y, z, h);
-            let layers = gradient.iter_mut().chain(&mut hessian);
-            for (layer, row) in layers.zip(first.iter().chain(&second)) {
-                layer[y * EDGE..][..EDGE].copy_from_slice(row);
-            }
-        }
-        (gradient, hessian)
     }
 
     /// Gradient and Hessian in row y of layer z of the brick, by central differences.

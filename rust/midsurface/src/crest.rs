@@ -9,7 +9,7 @@
 //! ribbon hardly wider than it is thick no voxel would be one: there more bend is allowed. The
 //! sheets of the other voxels follow from those of their core neighbours (`extension.rs`).
 
-use crate::block::{matrix_at, vector_at, Block};
+use crate::block::{matrix_at, vector_at, Block, Row};
 use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
 use crate::eigen::{eigenvalues, eigenvector};
 use crate::error::{collected, filled, zeros, Result};
@@ -100,7 +100,8 @@ fn find(
         with_widest_vectors(
             #[inline(always)]
             || {
-                let derivatives = profile.derivatives(batch, brick, h);
+                let wanted = |row: usize| row_of(own, row).iter().any(|d| *d > 0.0);
+                let derivatives = profile.derivatives(batch, brick, wanted, h);
                 find_tensors(&derivatives, own, border.as_ref(), (bent, h), out);
             },
         );
@@ -115,11 +116,10 @@ fn find(
         with_widest_vectors(
             #[inline(always)]
             || {
-                let derivatives = profile.derivatives(batch, brick, h);
-                let label = (
-                    &distance[brick * BRICK..][..BRICK],
-                    &near.largest_near()[..],
-                );
+                let near = near.largest_near();
+                let wanted = |row: usize| row_of(&near, row).iter().any(|d| *d > 0.0);
+                let derivatives = profile.derivatives(batch, brick, wanted, h);
+                let label = (&distance[brick * BRICK..][..BRICK], &near[..]);
                 find_sheets(&derivatives, tensors, label, (farthest, bent, h), sheets);
             },
         );
@@ -220,61 +220,61 @@ impl<'a> Border<'a> {
     }
 }
 
-/// A layer of entry k of a brick's tensors.
-fn entry(k: usize, z: usize) -> std::ops::Range<usize> {
-    let first = k * BRICK + z * LAYER;
-    first..first + LAYER
+/// A row of a field of a brick.
+#[inline(always)]
+fn row_of(field: &[f32], row: usize) -> Row {
+    let mut values = [0.0; EDGE];
+    values.copy_from_slice(&field[row * EDGE..][..EDGE]);
+    values
 }
 
 /// Fills in the tensors of a brick's voxels before smoothing, weighted; zero, as they were, outside
 /// the label and where a border cuts the profile.
 #[inline(always)]
 fn find_tensors(
-    layers: &[Derivatives],
+    rows: &[Derivatives],
     distance: &[f32],
     border: Option<&Border>,
     (most_bent, h): (f32, Vec3),
     tensors: &mut [f32],
 ) {
     let h = h.map(|h| h as f32);
-    for (z, (layer, distance)) in layers.iter().zip(distance.chunks_exact(LAYER)).enumerate() {
-        if distance.iter().all(|d| *d == 0.0) {
-            continue;
-        }
-        let mut sources = [[0.0; LAYER]; 3];
-        for i in 0..LAYER {
+    for own in rows.iter().copied() {
+        let distance = row_of(distance, own.row);
+        let mut sources = [[0.0; EDGE]; 3];
+        for i in 0..EDGE {
             // Relative to σ, so that a thick sheet does not outshout a thin one beside it.
-            let e = source(matrix_at(&layer.hessian, i), distance[i] / layer.sigma[i]);
+            let e = source(matrix_at(&own.hessian, i), distance[i] / own.sigma[i]);
             for (sources, v) in sources.iter_mut().zip(e) {
                 sources[i] = v;
             }
         }
         if let Some(border) = border {
-            for i in 0..LAYER {
-                if border.cuts(z * LAYER + i, vector_at(&sources, i)) {
+            for i in 0..EDGE {
+                if border.cuts(own.row * EDGE + i, vector_at(&sources, i)) {
                     sources.iter_mut().for_each(|e| e[i] = 0.0);
                 }
             }
         }
-        let mut products = [[0.0; LAYER]; ENTRIES];
-        for i in 0..LAYER {
+        let mut products = [[0.0; EDGE]; ENTRIES];
+        for i in 0..EDGE {
             let e = vector_at(&sources, i);
-            let trust = trust(layer, i, e, (most_bent, h));
+            let trust = trust(&own, i, e, (most_bent, h));
             let e = [e[0] * trust, e[1] * trust, e[2] * trust];
             let zz = e[2] * e[2];
-            let own = [
+            let entries = [
                 e[0] * e[0] - zz,
                 e[1] * e[1] - zz,
                 e[0] * e[1],
                 e[0] * e[2],
                 e[1] * e[2],
             ];
-            for (products, v) in products.iter_mut().zip(own) {
+            for (products, v) in products.iter_mut().zip(entries) {
                 products[i] = v;
             }
         }
-        for (k, product) in products.iter().enumerate() {
-            tensors[entry(k, z)].copy_from_slice(product);
+        for (tensors, product) in tensors.chunks_exact_mut(BRICK).zip(&products) {
+            tensors[own.row * EDGE..][..EDGE].copy_from_slice(product);
         }
     }
 }
@@ -282,11 +282,11 @@ fn find_tensors(
 /// How far a voxel's own normal counts, 0 to 1: less the steeper the profile falls within the sheet, and
 /// the farther off the middle is, but where voxels are long the nearest may be half of that away.
 #[inline(always)]
-fn trust(layer: &Derivatives, i: usize, e: [f32; 3], (most_bent, h): (f32, [f32; 3])) -> f32 {
+fn trust(row: &Derivatives, i: usize, e: [f32; 3], (most_bent, h): (f32, [f32; 3])) -> f32 {
     let length = dot(e, e).sqrt().max(f32::MIN_POSITIVE);
     let n = [e[0] / length, e[1] / length, e[2] / length];
-    let (offset, tangential, bent) = step(layer, i, n);
-    let most = TANGENTIAL * layer.sigma[i];
+    let (offset, tangential, bent) = step(row, i, n);
+    let most = TANGENTIAL * row.sigma[i];
     let longer = 0.5 * (voxel_along(n, h) - 1.0);
     let share = (tangential / most).max(offset.abs() / (most + longer));
     let clear = 1.0 - (bent / most_bent).max(0.0);
@@ -328,51 +328,67 @@ fn smooth_tensors(
 /// Fills in the sheets of a brick's core voxels, in the label or with the label `near`.
 #[inline(always)]
 fn find_sheets(
-    layers: &[Derivatives],
+    rows: &[Derivatives],
     tensors: &[f32],
     (inside, near): (&[f32], &[f32]),
     (farthest, most_bent, h): (f32, f32, Vec3),
     sheets: &mut [Sheet],
 ) {
     let h = h.map(|h| h as f32);
-    for (z, (layer, near)) in layers.iter().zip(near.chunks_exact(LAYER)).enumerate() {
-        let inside = &inside[z * LAYER..][..LAYER];
-        if near.iter().all(|d| *d == 0.0) {
-            continue;
+    for own in rows.iter().copied() {
+        let (inside, near) = (row_of(inside, own.row), row_of(near, own.row));
+        // Copies, whose length is known: only then do the eight voxels run side by side.
+        let mut entries = [[0.0; EDGE]; ENTRIES];
+        for (entry, tensors) in entries.iter_mut().zip(tensors.chunks_exact(BRICK)) {
+            *entry = row_of(tensors, own.row);
         }
-        let tensor: [&[f32]; ENTRIES] = std::array::from_fn(|k| &tensors[entry(k, z)]);
-        let mut found = [[0.0; LAYER]; 4];
-        for i in 0..LAYER {
-            let [xx, yy, xy, xz, yz] = tensor;
-            let tensor = [xx[i], yy[i], 0.0, xy[i], xz[i], yz[i]];
-            let [least, middle, largest] = eigenvalues(tensor);
-            let n = eigenvector(tensor, largest);
-            let (offset, tangential, bent) = step(layer, i, n);
-            let most = (TRUSTED as f32 * layer.sigma[i] + 0.5).min(farthest);
+        let (normals, varied) = principal_directions(&entries);
+        let mut found = [[0.0; EDGE]; 4];
+        for i in 0..EDGE {
+            let n = vector_at(&normals, i);
+            let (offset, tangential, bent) = step(&own, i, n);
+            let most = (TRUSTED as f32 * own.sigma[i] + 0.5).min(farthest);
             let close = (inside[i] > 0.0) | (voxel_along(n, h) <= LONG);
             let core = (near[i] > 0.0)
                 & close
                 & (offset.abs() <= most)
-                & (tangential <= TANGENTIAL * layer.sigma[i])
+                & (tangential <= TANGENTIAL * own.sigma[i])
                 & (bent <= most_bent)
-                & (middle - least <= VARIED * (largest - least));
+                & (varied[i] <= VARIED);
             for (found, v) in found.iter_mut().zip([n[0], n[1], n[2], offset]) {
                 found[i] = if core { v } else { 0.0 };
             }
         }
-        for (i, sheet) in sheets[z * LAYER..][..LAYER].iter_mut().enumerate() {
+        for (i, sheet) in sheets[own.row * EDGE..][..EDGE].iter_mut().enumerate() {
             *sheet = [found[0][i], found[1][i], found[2][i], found[3][i]];
         }
     }
+}
+
+/// The principal directions of a row of tensors, and how much the normals that they are sums of vary:
+/// the middle eigenvalue over the largest, both above the least.
+#[inline(always)]
+fn principal_directions([xx, yy, xy, xz, yz]: &[Row; ENTRIES]) -> ([Row; 3], Row) {
+    let (mut directions, mut varied) = ([[0.0; EDGE]; 3], [0.0; EDGE]);
+    for i in 0..EDGE {
+        let tensor = [xx[i], yy[i], 0.0, xy[i], xz[i], yz[i]];
+        let [least, middle, largest] = eigenvalues(tensor);
+        let n = eigenvector(tensor, largest);
+        varied[i] = (middle - least) / (largest - least).max(f32::MIN_POSITIVE);
+        for (directions, v) in directions.iter_mut().zip(n) {
+            directions[i] = v;
+        }
+    }
+    (directions, varied)
 }
 
 /// Newton's step along n to where the logarithm of the profile is largest, how far a step of the
 /// same curvature would go within the sheet, and the curvature within the sheet over that along n;
 /// no numbers where the profile has no crest along n.
 #[inline(always)]
-fn step(layer: &Derivatives, i: usize, n: [f32; 3]) -> (f32, f32, f32) {
-    let g = vector_at(&layer.gradient, i);
-    let [xx, yy, zz, xy, xz, yz] = matrix_at(&layer.hessian, i);
+fn step(row: &Derivatives, i: usize, n: [f32; 3]) -> (f32, f32, f32) {
+    let g = vector_at(&row.gradient, i);
+    let [xx, yy, zz, xy, xz, yz] = matrix_at(&row.hessian, i);
     let bent = [
         xx * n[0] + xy * n[1] + xz * n[2],
         xy * n[0] + yy * n[1] + yz * n[2],
@@ -384,15 +400,12 @@ fn step(layer: &Derivatives, i: usize, n: [f32; 3]) -> (f32, f32, f32) {
         g[1] - slope * n[1],
         g[2] - slope * n[2],
     ];
-    if curvature < 0.0 {
-        // What is left of the trace is the curvature within the sheet, both directions together.
-        let bend = (xx + yy + zz - curvature) / curvature;
-        (
-            -slope / curvature,
-            dot(within, within).sqrt() / -curvature,
-            bend,
-        )
-    } else {
-        (f32::NAN, f32::NAN, f32::NAN)
-    }
+    // What is left of the trace is the curvature within the sheet, both directions together.
+    let bend = (xx + yy + zz - curvature) / curvature;
+    let number = if curvature < 0.0 { 1.0 } else { f32::NAN };
+    (
+        number * (-slope / curvature),
+        number * (dot(within, within).sqrt() / -curvature),
+        number * bend,
+    )
 }

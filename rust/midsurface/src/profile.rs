@@ -8,7 +8,7 @@
 //! The mask is smoothed at a few levels of σ, each where it is wanted, and the logarithms'
 //! derivatives are blended between the two levels next to a voxel's own σ.
 
-use crate::block::{Block, Layer};
+use crate::block::{Block, Row};
 use crate::bricks::{Batch, BRICK, EDGE, LAYER};
 use crate::error::{collected, Result};
 use crate::execution::Execution;
@@ -24,6 +24,8 @@ const FIRST: f32 = 0.8;
 const RATIO: f32 = std::f32::consts::SQRT_2;
 /// Number of levels; the last one's σ is that of a label 20 thick.
 const LEVELS: usize = 7;
+/// σ of the last level.
+const LAST: f32 = 8.0 * FIRST;
 /// Where kernels are cut off, in σ.
 const REACH: f64 = 2.6;
 /// A smoothed mask below this has no logarithm to speak of.
@@ -35,12 +37,18 @@ pub(crate) struct Profile {
     half_thickness: HalfThickness,
 }
 
-/// First and second derivatives of the smoothed mask's logarithm in one layer of a brick, 0 where
-/// the mask is; σ is the scale they are of.
+/// First and second derivatives of the smoothed mask's logarithm in one row of a brick, 0 where the
+/// mask is.
+#[derive(Clone, Copy)]
 pub(crate) struct Derivatives {
-    pub gradient: [Layer; 3],
-    pub hessian: [Layer; 6],
-    pub sigma: Layer,
+    /// Row y of layer z is row 8 z + y.
+    pub row: usize,
+    pub gradient: [Row; 3],
+    pub hessian: [Row; 6],
+    /// The scale that they are of.
+    pub sigma: Row,
+    /// The level that goes with it.
+    level: Row,
 }
 
 impl Profile {
@@ -77,51 +85,65 @@ impl Profile {
 
     /// σ at every voxel of a brick; 0 where no label is near.
     pub fn sigma(&self, batch: &Batch, brick: usize) -> [f32; BRICK] {
-        self.half_thickness.brick(batch, brick).map(|half| {
-            if half > 0.0 {
-                sigma(level(half))
-            } else {
-                0.0
-            }
-        })
+        let sigma = |half| if half > 0.0 { wanted_sigma(half) } else { 0.0 };
+        self.half_thickness.brick(batch, brick).map(sigma)
     }
 
-    /// The derivatives in the layers of a brick.
+    /// The derivatives in the `wanted` rows of a brick.
     #[inline(always)]
-    pub fn derivatives(&self, batch: &Batch, brick: usize, h: Vec3) -> Vec<Derivatives> {
-        let coordinate = self.half_thickness.brick(batch, brick).map(level);
-        let wanted = levels_of(&coordinate);
-        let mut layers: Vec<Derivatives> = (0..EDGE)
-            .map(|z| Derivatives {
-                gradient: [[0.0; LAYER]; 3],
-                hessian: [[0.0; LAYER]; 6],
-                sigma: std::array::from_fn(|i| sigma(coordinate[z * LAYER + i])),
-            })
+    pub fn derivatives(
+        &self,
+        batch: &Batch,
+        brick: usize,
+        wanted: impl Fn(usize) -> bool,
+        h: Vec3,
+    ) -> Vec<Derivatives> {
+        let half = self.half_thickness.brick(batch, brick);
+        let mut rows: Vec<Derivatives> = (0..LAYER)
+            .filter(|&row| wanted(row))
+            .map(|row| Derivatives::new(row, std::array::from_fn(|i| half[row * EDGE + i])))
             .collect();
-        for level in (0..LEVELS).filter(|level| wanted >> level & 1 == 1) {
+        let levels = rows
+            .iter()
+            .fold(0, |bits, row| bits | levels_of(&row.level));
+        for level in (0..LEVELS).filter(|level| levels >> level & 1 == 1) {
             let block = Block::smooth(batch, brick, &self.levels[level]);
-            for (z, layer) in layers.iter_mut().enumerate() {
-                let weight = |i: usize| {
-                    let apart = (coordinate[z * LAYER + i] - level as f32).abs();
-                    (1.0 - apart).max(0.0)
-                };
-                layer.blend(&block, z, std::array::from_fn(weight), h);
+            for row in &mut rows {
+                row.blend(&block, level as f32, h);
             }
         }
-        layers
+        rows
     }
 }
 
 impl Derivatives {
-    /// Adds what one level says, with a weight for each voxel.
+    /// Those of a row with such half thicknesses before any level has its say.
+    fn new(row: usize, half: Row) -> Self {
+        Self {
+            row,
+            gradient: [[0.0; EDGE]; 3],
+            hessian: [[0.0; EDGE]; 6],
+            sigma: half.map(wanted_sigma),
+            level: half.map(level),
+        }
+    }
+
+    /// Adds what one level says.
     #[inline(always)]
-    fn blend(&mut self, block: &Block<f32>, z: usize, weight: Layer, h: Vec3) {
+    fn blend(&mut self, block: &Block<f32>, level: f32, h: Vec3) {
+        let mut weight = [0.0; EDGE];
+        for (weight, own) in weight.iter_mut().zip(&self.level) {
+            *weight = (1.0 - (own - level).abs()).max(0.0);
+        }
         if weight.iter().all(|w| *w == 0.0) {
             return;
         }
-        let value = block.layer(z);
-        let (gradient, hessian) = block.derivatives(z, h);
-        for i in 0..LAYER {
+        let (y, z) = (self.row % EDGE, self.row / EDGE);
+        let value = *block.row(y, z);
+        // Copies: only then do the eight voxels run side by side.
+        let mut sum = *self;
+        let (gradient, hessian) = block.row_derivatives(y, z, h);
+        for i in 0..EDGE {
             let known = value[i] > LEAST;
             let (w, inverse) = if known {
                 (weight[i], 1.0 / value[i])
@@ -129,7 +151,7 @@ impl Derivatives {
                 (0.0, 0.0)
             };
             let g: [f32; 3] = std::array::from_fn(|k| gradient[k][i] * inverse);
-            for (sum, g) in self.gradient.iter_mut().zip(g) {
+            for (sum, g) in sum.gradient.iter_mut().zip(g) {
                 sum[i] += w * g;
             }
             let products = [
@@ -141,13 +163,19 @@ impl Derivatives {
                 g[1] * g[2],
             ];
             for k in 0..6 {
-                self.hessian[k][i] += w * (hessian[k][i] * inverse - products[k]);
+                sum.hessian[k][i] += w * (hessian[k][i] * inverse - products[k]);
             }
         }
+        *self = sum;
     }
 }
 
-/// Level, from 0, of the σ that goes with a half thickness.
+/// The σ that goes with a half thickness.
+fn wanted_sigma(half: f32) -> f32 {
+    (SHARE * half).clamp(FIRST, LAST)
+}
+
+/// Its level, from 0.
 fn level(half: f32) -> f32 {
     let level = (SHARE * half / FIRST).max(1.0).log2() / RATIO.log2();
     level.min((LEVELS - 1) as f32)
@@ -159,7 +187,7 @@ fn sigma(level: f32) -> f32 {
 }
 
 /// The levels that voxels blend, a bit each.
-fn levels_of(coordinates: &[f32; BRICK]) -> u8 {
+fn levels_of(coordinates: &[f32]) -> u8 {
     coordinates.iter().fold(0, |bits, c| {
         bits | 1 << c.floor() as u8 | 1 << c.ceil() as u8
     })
