@@ -15,9 +15,10 @@ use crate::eigen::{eigenvalues, eigenvector};
 use crate::error::{collected, filled, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot as dot3, last_voxel, Vec3};
+use crate::lag::{self, turn_lagging};
 use crate::profile::{Derivatives, Profile};
 use crate::separable::{self, smooth_some, Kernel};
-use crate::sheet::{dot, source, unshrink, voxel_along, Sheet, ENTRIES, TRUSTED};
+use crate::sheet::{dot, is_trusted, source, unshrink, voxel_along, Sheet, ENTRIES};
 use crate::vectors::with_widest_vectors;
 
 /// A core voxel's profile falls within the sheet by at most this much, in σ² times curvature.
@@ -40,7 +41,7 @@ const RHO_STEP: f32 = 1.1892;
 const REACH: f32 = 2.3;
 
 /// Passes over all bricks that [`core_sheets`] makes, for its progress.
-pub(crate) const PASSES: usize = 5 + separable::PASSES;
+pub(crate) const PASSES: usize = 6 + separable::PASSES + lag::PASSES;
 
 /// The sheets of the core voxels of a batch, with offsets of up to `farthest`.
 pub(crate) fn core_sheets(
@@ -54,15 +55,19 @@ pub(crate) fn core_sheets(
     let bricks = batch.part_of_brick.len();
     let sigma = execution.collect(bricks, |brick| mean_sigma(profile, batch, brick))?;
     let mut sheets: Vec<Sheet> = zeros(bricks * BRICK)?;
+    let mut weight = batch.field()?;
     let label = (batch, distance, farthest, h);
     let mut find = |wanted: &[bool], bent, sheets: &mut [Sheet]| {
-        find(label, profile, &sigma, (wanted, bent), sheets, execution)
+        let of_sheets = (sheets, &mut weight[..]);
+        find(label, profile, &sigma, (wanted, bent), of_sheets, execution)
     };
     find(&filled(true, bricks)?, BENT, &mut sheets)?;
     let ribbons = bricks_without_core(batch, &sheets)?;
     if ribbons.contains(&true) {
         find(&ribbons, RIBBON, &mut sheets)?;
     }
+    let known = (profile, &sigma[..], &weight[..]);
+    turn_lagging(batch, known, farthest, h, &mut sheets, execution)?;
     let variance = |brick: usize| f64::from(sigma[brick] * sigma[brick]);
     unshrink(batch, variance, &mut sheets, h, execution)?;
     Ok(sheets)
@@ -79,13 +84,14 @@ fn bricks_without_core(batch: &Batch, sheets: &[Sheet]) -> Result<Vec<bool>> {
     collected(parts.map(|&part| !has_core[part as usize]))
 }
 
-/// Finds the sheets of the core voxels of the `wanted` bricks, bent by at most `bent`.
+/// Finds the sheets of the core voxels of the `wanted` bricks, bent by at most `bent`, and what
+/// tensors were smoothed from there.
 fn find(
     (batch, distance, farthest, h): (&Batch, &[f32], f32, Vec3),
     profile: &Profile,
     sigma: &[f32],
     (wanted, bent): (&[bool], f32),
-    sheets: &mut [Sheet],
+    (sheets, weight): (&mut [Sheet], &mut [f32]),
     execution: &mut Execution,
 ) -> Result<()> {
     let bricks = batch.part_of_brick.len();
@@ -107,12 +113,20 @@ fn find(
         );
     })?;
     let tensors = smooth_tensors(batch, (sigma, wanted), tensors, h, execution)?;
+    let of_brick = |brick: usize| &tensors[brick * BRICK * ENTRIES..][..BRICK * ENTRIES];
+    execution.fill(weight, BRICK, |brick, out| {
+        if wanted[brick] && of_brick(brick).iter().any(|v| *v != 0.0) {
+            with_widest_vectors(
+                #[inline(always)]
+                || find_weights(of_brick(brick), out),
+            );
+        }
+    })?;
     execution.fill(sheets, BRICK, |brick, sheets| {
         let near = Block::gather(batch, brick, distance);
         if !wanted[brick] || near.values.iter().all(|d| *d == 0.0) {
             return;
         }
-        let tensors = &tensors[brick * BRICK * ENTRIES..][..BRICK * ENTRIES];
         with_widest_vectors(
             #[inline(always)]
             || {
@@ -120,7 +134,13 @@ fn find(
                 let wanted = |row: usize| row_of(&near, row).iter().any(|d| *d > 0.0);
                 let derivatives = profile.derivatives(batch, brick, wanted, h);
                 let label = (&distance[brick * BRICK..][..BRICK], &near[..]);
-                find_sheets(&derivatives, tensors, label, (farthest, bent, h), sheets);
+                find_sheets(
+                    &derivatives,
+                    of_brick(brick),
+                    label,
+                    (farthest, bent, h),
+                    sheets,
+                );
             },
         );
         if let Some(border) = border(brick) {
@@ -297,6 +317,12 @@ fn trust(row: &Derivatives, i: usize, e: [f32; 3], (most_bent, h): (f32, [f32; 3
     }
 }
 
+/// The standard deviation of the tensors' smoothing that goes with σ.
+pub(crate) fn rho(sigma: f32) -> f32 {
+    let [least, most] = RHO_BOUNDS;
+    sigma.clamp(least, most)
+}
+
 /// Smooths the tensors of the `wanted` bricks with a ρ for each that goes with its σ.
 fn smooth_tensors(
     batch: &Batch,
@@ -317,12 +343,38 @@ fn smooth_tensors(
         })
         .collect();
     let kernel_of = |brick: usize| {
-        let rho = sigma[brick].clamp(least, most);
-        let step = ((rho / least).log2() / RHO_STEP.log2()).round();
+        let step = ((rho(sigma[brick]) / least).log2() / RHO_STEP.log2()).round();
         wanted[brick].then_some(&kernels[step as usize])
     };
     let mut scratch = zeros(tensors.len())?;
     smooth_some(batch, kernel_of, tensors, &mut scratch, execution)
+}
+
+/// Fills in what the tensors of a brick's voxels were smoothed from: their largest eigenvalue over the
+/// least, which is that of no sheet.
+#[inline(always)]
+fn find_weights(tensors: &[f32], weights: &mut [f32]) {
+    for (row, weights) in weights.chunks_exact_mut(EDGE).enumerate() {
+        let [xx, yy, xy, xz, yz] = entries(tensors, row);
+        let mut found = [0.0; EDGE];
+        for i in 0..EDGE {
+            let tensor = [xx[i], yy[i], 0.0, xy[i], xz[i], yz[i]];
+            let [least, _, largest] = eigenvalues(tensor);
+            found[i] = largest - least;
+        }
+        weights.copy_from_slice(&found);
+    }
+}
+
+/// The entries of a row of tensors. Copies, whose length is known: only then do the eight voxels run
+/// side by side.
+#[inline(always)]
+fn entries(tensors: &[f32], row: usize) -> [Row; ENTRIES] {
+    let mut entries = [[0.0; EDGE]; ENTRIES];
+    for (entry, tensors) in entries.iter_mut().zip(tensors.chunks_exact(BRICK)) {
+        *entry = row_of(tensors, row);
+    }
+    entries
 }
 
 /// Fills in the sheets of a brick's core voxels, in the label or with the label `near`.
@@ -337,21 +389,15 @@ fn find_sheets(
     let h = h.map(|h| h as f32);
     for own in rows.iter().copied() {
         let (inside, near) = (row_of(inside, own.row), row_of(near, own.row));
-        // Copies, whose length is known: only then do the eight voxels run side by side.
-        let mut entries = [[0.0; EDGE]; ENTRIES];
-        for (entry, tensors) in entries.iter_mut().zip(tensors.chunks_exact(BRICK)) {
-            *entry = row_of(tensors, own.row);
-        }
-        let (normals, varied) = principal_directions(&entries);
+        let (normals, varied) = principal_directions(&entries(tensors, own.row));
         let mut found = [[0.0; EDGE]; 4];
         for i in 0..EDGE {
             let n = vector_at(&normals, i);
             let (offset, tangential, bent) = step(&own, i, n);
-            let most = (TRUSTED as f32 * own.sigma[i] + 0.5).min(farthest);
             let close = (inside[i] > 0.0) | (voxel_along(n, h) <= LONG);
             let core = (near[i] > 0.0)
                 & close
-                & (offset.abs() <= most)
+                & is_trusted(offset, own.sigma[i], farthest)
                 & (tangential <= TANGENTIAL * own.sigma[i])
                 & (bent <= most_bent)
                 & (varied[i] <= VARIED);
@@ -386,7 +432,7 @@ fn principal_directions([xx, yy, xy, xz, yz]: &[Row; ENTRIES]) -> ([Row; 3], Row
 /// same curvature would go within the sheet, and the curvature within the sheet over that along n;
 /// no numbers where the profile has no crest along n.
 #[inline(always)]
-fn step(row: &Derivatives, i: usize, n: [f32; 3]) -> (f32, f32, f32) {
+pub(crate) fn step(row: &Derivatives, i: usize, n: [f32; 3]) -> (f32, f32, f32) {
     let g = vector_at(&row.gradient, i);
     let [xx, yy, zz, xy, xz, yz] = matrix_at(&row.hessian, i);
     let bent = [

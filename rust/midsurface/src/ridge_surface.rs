@@ -1,7 +1,7 @@
 //! The method "ridge surface": the mid-surface in any orientation.
 //!
 //! Batch by batch: how thick the label is (`scale.rs`), its profile under a Gaussian as wide
-//! (`profile.rs`), the sheets at its crest (`crest.rs`), how they bend (`bending.rs`) and on to
+//! (`profile.rs`), the sheets at its crest (`crest.rs`, `lag.rs`), how they bend (`bending.rs`) and on to
 //! beyond the rims (`extension.rs`), a surface through them (`contour.rs`), wound the same way
 //! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
 //! (`weld.rs`) and creases where sheets meet (`creases.rs`), closed where it has holes within the

@@ -46,7 +46,13 @@ pub(crate) fn by_offset(sheet: &Sheet, index: usize) -> u64 {
 pub(crate) const PASSES: usize = 24;
 
 /// An offset beyond this many σ (plus half a unit) is no longer that of a parabola.
-pub(crate) const TRUSTED: f64 = 1.3;
+const TRUSTED: f64 = 1.3;
+
+/// Whether an offset is such that it tells where the middle is, and no more than `farthest`.
+#[inline(always)]
+pub(crate) fn is_trusted(offset: f32, sigma: f32, farthest: f32) -> bool {
+    offset.abs() <= (TRUSTED as f32 * sigma + 0.5).min(farthest)
+}
 
 /// Entries of the tensor e eᵀ − e_z² I: xx, yy, xy, xz, yz. Eigenvectors do not change when a
 /// multiple of the identity is taken off, so that five are enough.
