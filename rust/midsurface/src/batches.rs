@@ -103,11 +103,11 @@ impl<R> Observer for Teller<'_, R> {
 }
 
 /// Hands what `work` makes of the parts, which are ordered by component, batch by batch, to `keep`.
-/// All takes the progress from where reading ended up to `until`.
+/// All takes this `span` of the progress.
 pub(crate) fn for_each_batch<'a, R: Send>(
     all_parts: &'a [Part],
     execution: &mut Execution,
-    until: f64,
+    span: [f64; 2],
     work: impl Fn(&'a [Part], &mut Execution) -> Result<R> + Sync,
     keep: impl FnMut(&[Part], R) -> Result<()>,
 ) -> Result<()> {
@@ -120,7 +120,7 @@ pub(crate) fn for_each_batch<'a, R: Send>(
     let pool = execution.pool();
     let workers = SIDE_BY_SIDE.min(pool.current_num_threads());
     let (sender, receiver) = channel();
-    execution.within(until * READING, until);
+    execution.within(span[0], span[1]);
     pool.in_place_scope(|scope| {
         scope.spawn_broadcast(|_, worker| {
             if worker.index() < workers {
@@ -129,7 +129,7 @@ pub(crate) fn for_each_batch<'a, R: Send>(
         });
         receive(&queue, (&receiver, workers), execution, keep)
     })?;
-    execution.within(until, 1.0);
+    execution.within(span[1], 1.0);
     Ok(())
 }
 
@@ -217,7 +217,8 @@ pub(crate) fn for_each_ridge_field<'a, R: Send>(
         execution.stage(stage, 0.5, 1.0, 1)?;
         work(batch, field, execution)
     };
-    for_each_batch(all_parts, execution, until, work, |_, found| keep(found))
+    let span = [until * READING, until];
+    for_each_batch(all_parts, execution, span, work, |_, found| keep(found))
 }
 
 /// Cuts the parts into batches of whole components.

@@ -13,7 +13,6 @@
 
 use crate::buckets::Buckets;
 use crate::cells::{bounds, near, Cells};
-use crate::components::DisjointSets;
 use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, length, sub, unit, Vec3};
@@ -33,9 +32,10 @@ const SMOOTH: f64 = 0.9;
 /// What is this near to a crease is cut away, work units;
 const CLEAR: f64 = 1.0;
 /// and what is this near to a blind rim that this reaches, no farther off the way ahead than this
-/// cosine.
+/// cosine, nor more points along the rim.
 const AHEAD: f64 = 2.5;
 const ONWARD: f64 = 0.3;
+const ALONG: usize = 24;
 /// Passes over the points that [`cut_creases`] makes.
 pub(crate) const PASSES: usize = 1;
 
@@ -86,7 +86,7 @@ fn creases(surface: &Surface, fans: &Fans, blind: &[u32]) -> Result<Vec<Seed>> {
     collected(creased.map(|(&point, _)| Seed { point, way: None }))
 }
 
-/// The points of blind rims that what goes reaches somewhere, each with its way ahead.
+/// The points of blind rims that what goes reaches, each with its way ahead.
 fn reached_rims(
     surface: &Surface,
     fans: &Fans,
@@ -94,24 +94,29 @@ fn reached_rims(
     goes: &[bool],
 ) -> Result<Vec<Seed>> {
     let triangles = &surface.triangles;
-    let mut rims = DisjointSets::new(surface.points.len())?;
-    for &p in blind {
-        for &e in fans.of(p) {
-            let other = ends(triangles, e).1 as usize;
-            if is_blind[other] && fans.twin(triangles, e) == NONE {
-                rims.join(p as usize, other);
-            }
-        }
-    }
     let mut is_reached: Vec<bool> = zeros(surface.points.len())?;
     for (triangle, _) in triangles.iter().zip(goes).filter(|(_, goes)| **goes) {
         for p in triangle.map(|p| p as usize) {
-            is_reached[rims.find(p)] |= is_blind[p];
+            is_reached[p] = is_blind[p];
         }
+    }
+    let mut sides = Vec::new();
+    for &p in blind {
+        for &e in fans.of(p) {
+            let side = [p, ends(triangles, e).1].map(|p| p as usize);
+            if is_blind[side[1]] && fans.twin(triangles, e) == NONE {
+                push(&mut sides, side)?;
+            }
+        }
+    }
+    for _ in 0..ALONG {
+        let is_news = |side: &&[usize; 2]| is_reached[side[0]] != is_reached[side[1]];
+        let told = collected(sides.iter().filter(is_news).flatten().copied())?;
+        told.into_iter().for_each(|p| is_reached[p] = true);
     }
     let mut reached = Vec::new();
     for &point in blind {
-        if is_reached[rims.find(point as usize)] {
+        if is_reached[point as usize] {
             let way = Some(unit(away(surface, fans, point)));
             push(&mut reached, Seed { point, way })?;
         }

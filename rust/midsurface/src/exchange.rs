@@ -39,6 +39,24 @@ const MESSAGE: i64 = 0;
 const FAILURE: i64 = 1;
 const CANCELLED: i64 = 2;
 
+/// What a process that works alone exchanges: nothing.
+pub(crate) struct Alone;
+
+impl Exchange for Alone {
+    fn processes(&self) -> usize {
+        1
+    }
+    fn process(&self) -> usize {
+        FIRST
+    }
+    fn send(&mut self, _: usize, _: &[i64]) -> bool {
+        false
+    }
+    fn receive(&mut self, _: usize, _: &mut [i64]) -> bool {
+        false
+    }
+}
+
 /// The processes as a team, seen from one of them.
 pub(crate) struct Team<'a> {
     exchange: &'a mut dyn Exchange,

@@ -139,6 +139,11 @@ impl<'a> Execution<'a> {
         self.span = [from, to];
     }
 
+    /// The present span of the run's progress.
+    pub fn span(&self) -> [f64; 2] {
+        self.span
+    }
+
     /// Announces the next stage, which takes the progress from `from` to `to`, counted within the
     /// present span, in so many passes over the data.
     pub fn stage(&mut self, stage: &'static str, from: f64, to: f64, passes: usize) -> Result<()> {

@@ -1,9 +1,11 @@
 //! What a run has to tell its user in the end, as counts that add up over batches and processes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use crate::components::Part;
 use crate::execution::Execution;
 use crate::grid;
+use crate::mesh::Mesh;
 
 /// The most labels that a message names.
 pub(crate) const MOST_LISTED: usize = 20;
@@ -25,6 +27,20 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
+    /// Counts the components among some parts that have no triangle in their surface.
+    pub fn add_without(&mut self, parts: &[Part], surface: &Mesh) {
+        // One by one: a set made at once would ask for memory for all triangles.
+        let mut found = BTreeSet::new();
+        for of_component in surface.components.chunk_by(|a, b| a == b) {
+            found.insert(of_component[0]);
+        }
+        for component in parts.chunk_by(|a, b| a.component == b.component) {
+            if !found.contains(&component[0].component) {
+                *self.without.entry(component[0].label).or_default() += 1;
+            }
+        }
+    }
+
     pub fn add(&mut self, other: &Self) {
         self.disks += other.disks;
         self.lines += other.lines;

@@ -38,7 +38,8 @@
 //! `grid.rs` tells the frames. Everything between scan and polylines, or the ridge surface, happens in
 //! batches of whole components, two side by side (`batches.rs`), so that memory follows the largest
 //! batches, and depends on places in the volume only, never on the order of work: any number of
-//! threads gives the same mesh. So does any number of processes that hold a piece of the volume each:
+//! threads gives the same mesh. A component that is larger than a batch should be is cut into tiles
+//! (`lots.rs`, `tiles.rs`, `tiled_surface.rs`) for the ridge surface. So does any number of processes that hold a piece of the volume each:
 //! they swap runs (`exchange.rs`) until each has whole components (`territory.rs`, `pieces.rs`), and
 //! what follows is the same.
 #![forbid(unsafe_code)]
@@ -78,10 +79,12 @@ mod interpolation;
 mod lag;
 mod lattice;
 mod look;
+mod lots;
 mod manifold;
 mod mask;
 mod mesh;
 mod midway;
+mod mosaic;
 mod normals;
 mod pieces;
 mod polylines;
@@ -99,6 +102,7 @@ mod rim;
 mod runs;
 mod scale;
 mod scraps;
+mod seams;
 mod self_intersections;
 mod separable;
 mod settle;
@@ -110,6 +114,10 @@ mod strip;
 mod terraces;
 mod territory;
 mod thickness;
+mod tile;
+mod tiled_mesh;
+mod tiled_surface;
+mod tiles;
 mod touching;
 mod trace;
 mod trim;
@@ -117,8 +125,6 @@ mod vectors;
 mod volume;
 mod weld;
 mod zipper;
-
-use std::collections::BTreeSet;
 
 use ndarray::ArrayViewMut3;
 
@@ -129,17 +135,20 @@ pub use distributed::{
 };
 pub use error::{Error, Result};
 pub use exchange::{abandon, Exchange};
+use exchange::{Alone, Team};
 use execution::Execution;
 pub use execution::{Observer, Quiet};
 use findings::Findings;
 pub use grid::{Grid, Vec3};
+use lots::Sizes;
 pub use mesh::{InvariantViolation, Mesh};
 pub use polylines::{Polyline, Polylines};
 pub use quality::Quality;
-use reading::read_parts;
+use reading::{read_parts, READING};
 pub use statistics::{
     statistics, statistics_of_pieces, Scope, Statistics, ThicknessFigures, TriangleMesh,
 };
+use tiled_surface::tiled_surface;
 pub use volume::{Label, Scalars, Volume};
 
 /// How the mid-surface is found.
@@ -380,6 +389,8 @@ fn find_ridge_surface(
     execution: &mut Execution,
 ) -> Result<Mesh> {
     let mut mesh = Mesh::default();
+    let sizes = Sizes::USUAL;
+    let mut alone = Alone;
     findings.is_slice = grid.dimensions.contains(&1);
     if findings.is_slice {
         return Ok(mesh);
@@ -387,19 +398,29 @@ fn find_ridge_surface(
     let work = |parts: &[Part], execution: &mut Execution| {
         ridge_surface::ridge_surface(parts, grid, options.edge_length, execution)
     };
-    for_each_batch(parts, execution, 1.0, work, |parts, surface| {
-        // One by one: a set made at once would ask for memory for all triangles.
-        let mut found = BTreeSet::new();
-        for of_component in surface.components.chunk_by(|a, b| a == b) {
-            found.insert(of_component[0]);
-        }
-        for component in parts.chunk_by(|a, b| a.component == b.component) {
-            if !found.contains(&component[0].component) {
-                *findings.without.entry(component[0].label).or_default() += 1;
+    let mut keep = |parts: &[Part], surface| {
+        findings.add_without(parts, &surface);
+        mesh.append(surface)
+    };
+    let all: usize = parts.iter().map(Part::voxels).sum();
+    let share = |voxels: usize| READING + (1.0 - READING) * voxels as f64 / all as f64;
+    let mut done = 0;
+    for lot in sizes.lots(parts)? {
+        let before = done;
+        done += lot.iter().map(Part::voxels).sum::<usize>();
+        let span = [share(before), share(done)];
+        if sizes.is_tiled(lot) {
+            execution.within(span[0], span[1]);
+            let size = (options.edge_length, sizes.side);
+            let team = &mut Team::new(&mut alone);
+            let surface = tiled_surface(lot, grid, size, team, execution)?;
+            if let Some(surface) = surface {
+                keep(lot, surface)?;
+                continue;
             }
         }
-        mesh.append(surface)
-    })?;
+        for_each_batch(lot, execution, span, work, &mut keep)?;
+    }
     findings.triangles = mesh.triangles.len();
     findings.is_far = !parts.is_empty() && findings::is_volume_far(grid);
     Ok(mesh)

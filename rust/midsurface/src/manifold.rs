@@ -5,7 +5,7 @@
 //! gives the points on it copies, each moved a little into its own sheet, so that no two points
 //! coincide.
 
-use crate::error::{filled, push, zeros, Result};
+use crate::error::{collected, filled, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, sub, Vec3};
 use crate::halfedge::{self, ends, next, previous, triangles_at, twins, Fans, MOST_AROUND, NONE};
@@ -28,6 +28,15 @@ pub(crate) struct Surface {
 }
 
 impl Surface {
+    /// A copy.
+    pub fn copied(&self) -> Result<Self> {
+        Ok(Self {
+            points: collected(self.points.iter().copied())?,
+            triangles: collected(self.triangles.iter().copied())?,
+            source: collected(self.source.iter().copied())?,
+        })
+    }
+
     /// The surface without points that no triangle uses.
     pub fn compact(mut self) -> Result<Self> {
         let mut number: Vec<u32> = zeros(self.points.len())?;
@@ -56,6 +65,23 @@ impl Surface {
 pub(crate) fn make_manifold(surface: &mut Surface, execution: &mut Execution) -> Result<()> {
     let mut twins = twins(&surface.triangles, surface.points.len(), execution)?;
     orient(&mut surface.triangles, &mut twins, execution)?;
+    split_points(surface, &twins, execution)
+}
+
+/// Makes a manifold of triangles that are wound as they are to stay: neighbours that disagree are cut
+/// apart.
+pub(crate) fn make_manifold_as_wound(
+    surface: &mut Surface,
+    execution: &mut Execution,
+) -> Result<()> {
+    let triangles = &surface.triangles;
+    let mut twins = twins(triangles, surface.points.len(), execution)?;
+    for e in 0..twins.len() {
+        let twin = twins[e];
+        if twin != NONE && ends(triangles, e as u32).0 == ends(triangles, twin).0 {
+            (twins[e], twins[twin as usize]) = (NONE, NONE);
+        }
+    }
     split_points(surface, &twins, execution)
 }
 

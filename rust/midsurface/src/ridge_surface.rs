@@ -112,14 +112,19 @@ pub(crate) fn ridge_surface(
     let mut surface = moved_midway(&label, surface, &fraction, execution)?;
     turn_outward(&surface.points, &mut surface.triangles)?;
     execution.stage("Remeshing", 0.65, 0.94, 1)?;
-    let wanted = match edge_length {
-        0.0 => EDGE_LENGTH,
-        length => length / grid.unit(),
-    };
+    let wanted = wanted_edge(edge_length, grid);
     let mut found = remeshed(surface, wanted, execution)?;
     keep_within(grid, &mut found.points);
     let (found, fans) = finish(&label, found, grid, wanted, execution)?;
     in_world(&label, grid, (found, fans), execution)
+}
+
+/// The edge length to aim at, work units.
+pub(crate) fn wanted_edge(edge_length: f64, grid: &Grid) -> f64 {
+    match edge_length {
+        0.0 => EDGE_LENGTH,
+        length => length / grid.unit(),
+    }
 }
 
 /// The surface in new triangles; each point's part stays its source.
@@ -138,7 +143,7 @@ fn remeshed(surface: Surface, wanted: f64, execution: &mut Execution) -> Result<
 
 /// Rids a remeshed surface of terraces and self-intersections, and moves its points a little closer
 /// to the middle.
-fn finish(
+pub(crate) fn finish(
     label: &Label,
     mut found: Surface,
     grid: &Grid,
@@ -207,7 +212,7 @@ fn flatten(
 }
 
 /// Puts points that were moved beyond the border of the volume back onto it.
-fn keep_within(grid: &Grid, points: &mut [Vec3]) {
+pub(crate) fn keep_within(grid: &Grid, points: &mut [Vec3]) {
     let last = last_voxel(grid.dimensions, grid.work_spacing());
     for p in points {
         *p = std::array::from_fn(|a| p[a].clamp(0.0, last[a]));
@@ -224,7 +229,7 @@ fn in_mesh(grid: &Grid) -> impl Fn(Vec3) -> [f32; 3] + Sync + '_ {
 }
 
 /// The sheets of a batch, from the profile's crest to beyond the rims.
-fn find_sheets(
+pub(crate) fn find_sheets(
     batch: &Batch,
     distance: &[f32],
     h: Vec3,
@@ -267,11 +272,27 @@ fn cut_surface(
     let fraction = sheet_fraction(batch, &sheets, distance, h, execution)?;
     drop(sheets);
     let at_points = values(batch, &surface, &fraction, h, execution)?;
-    trim(&mut surface, &at_points, last_voxel(grid.dimensions, h))?;
+    let surface = trimmed(
+        surface,
+        &at_points,
+        last_voxel(grid.dimensions, h),
+        execution,
+    )?;
+    Ok((surface, fraction))
+}
+
+/// A manifold cut at the rims, without scraps and slivers; `fraction` is the sheet fraction at its points.
+pub(crate) fn trimmed(
+    mut surface: Surface,
+    fraction: &[f64],
+    last: Vec3,
+    execution: &mut Execution,
+) -> Result<Surface> {
+    trim(&mut surface, fraction, last)?;
     drop_scraps(&mut surface, |_| true)?;
     weld(&mut surface, execution)?;
     execution.pass_done()?;
-    Ok((surface.compact()?, fraction))
+    surface.compact()
 }
 
 /// Closes a surface's false holes, moves it midway, up to the border of the volume, and leads it on to
@@ -282,26 +303,35 @@ fn moved_midway(
     field: &[f32],
     execution: &mut Execution,
 ) -> Result<Surface> {
-    let (batch, h) = (label.batch, label.h);
     let mut fans = cut_creases(label, &mut surface, field, execution)?;
     fans = close_holes(label, &mut surface, fans, field, execution)?;
-    let mut fraction = values(batch, &surface, field, h, execution)?;
+    let mut fraction = values(label.batch, &surface, field, label.h, execution)?;
     for from in lead_beyond(&mut surface, &fans, label.last())? {
         let of_point = fraction[from as usize];
         push(&mut fraction, of_point)?;
     }
     fans = Fans::new(&surface.triangles, surface.points.len())?;
     move_midway(label, &mut surface, &fraction, &fans, execution)?;
+    led_on(label, surface, field, execution)
+}
+
+/// A surface that is midway, cut at the border of the volume and led on to where sheets meet.
+pub(crate) fn led_on(
+    label: &Label,
+    mut surface: Surface,
+    field: &[f32],
+    execution: &mut Execution,
+) -> Result<Surface> {
     cut_at_border(&mut surface, label.last())?;
     let mut surface = surface.compact()?;
-    fraction = values(batch, &surface, field, h, execution)?;
-    fans = Fans::new(&surface.triangles, surface.points.len())?;
+    let fraction = values(label.batch, &surface, field, label.h, execution)?;
+    let fans = Fans::new(&surface.triangles, surface.points.len())?;
     reach(label, &mut surface, &fraction, &fans, execution)?;
     Ok(surface)
 }
 
 /// The value of a field at every point of a surface, whose points have their parts as sources.
-fn values(
+pub(crate) fn values(
     batch: &Batch,
     surface: &Surface,
     field: &[f32],
@@ -325,7 +355,7 @@ fn values(
 }
 
 /// A finished surface as a mesh in world coordinates; `source` is the part of each point.
-fn in_world(
+pub(crate) fn in_world(
     label: &Label,
     grid: &Grid,
     (found, fans): (Surface, Fans),

@@ -34,21 +34,42 @@ pub(crate) fn sheet_fraction(
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
-    let mut values = mask(batch, distance, execution)?;
+    let smoothed = smoothed_mask(batch, distance, h, execution)?;
+    let inside = inside(batch, sheets, (distance, &smoothed), h, execution)?;
+    over_inside(batch, smoothed, &inside, execution)
+}
+
+/// The slightly smoothed mask at every voxel of a batch.
+pub(crate) fn smoothed_mask(
+    batch: &Batch,
+    distance: &[f32],
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<Vec<f32>> {
+    let mask = mask(batch, distance, execution)?;
     let Some(directory) = batch.directories.first() else {
-        return Ok(values);
+        return Ok(mask);
     };
     let kernels = Kernel::repeating(SIGMA, REACH * SIGMA, h, directory);
     let mut scratch = batch.field()?;
-    values = smooth_some(batch, |_| Some(&kernels), values, &mut scratch, execution)?;
-    drop(scratch);
+    smooth_some(batch, |_| Some(&kernels), mask, &mut scratch, execution)
+}
+
+/// What the `smoothed` mask is midway through the sheet around a voxel.
+pub(crate) fn inside(
+    batch: &Batch,
+    sheets: &[Sheet],
+    (distance, smoothed): (&[f32], &[f32]),
+    h: Vec3,
+    execution: &mut Execution,
+) -> Result<BrickMeans> {
     let spacing = h.map(|h| h as f32);
-    let inside = BrickMeans::new(
+    BrickMeans::new(
         batch,
         |brick| {
             let own = brick * BRICK..(brick + 1) * BRICK;
             let mut sums = [0.0; 2];
-            for ((value, sheet), d) in values[own.clone()]
+            for ((value, sheet), d) in smoothed[own.clone()]
                 .iter()
                 .zip(&sheets[own.clone()])
                 .zip(&distance[own])
@@ -64,8 +85,17 @@ pub(crate) fn sheet_fraction(
             sums
         },
         execution,
-    )?;
-    execution.fill(&mut values, BRICK, |brick, values| {
+    )
+}
+
+/// The sheet fraction, from the smoothed mask and what that is inside.
+pub(crate) fn over_inside(
+    batch: &Batch,
+    mut smoothed: Vec<f32>,
+    inside: &BrickMeans,
+    execution: &mut Execution,
+) -> Result<Vec<f32>> {
+    execution.fill(&mut smoothed, BRICK, |brick, values| {
         if values.iter().all(|v| *v == 0.0) {
             return;
         }
@@ -73,5 +103,5 @@ pub(crate) fn sheet_fraction(
             *value = if inside > 0.0 { *value / inside } else { 0.0 };
         }
     })?;
-    Ok(values)
+    Ok(smoothed)
 }

@@ -32,6 +32,16 @@ impl BrickMeans {
         Ok(Self(sums))
     }
 
+    /// From the sums of all bricks.
+    pub fn of_sums(sums: Vec<[f32; 2]>) -> Self {
+        Self(sums)
+    }
+
+    /// The sums of all bricks.
+    pub fn sums(&self) -> &[[f32; 2]] {
+        &self.0
+    }
+
     /// The sums of the bricks around a brick, 0 where there is none.
     fn around(&self, directory: &Directory, place: [usize; 3]) -> [[f32; 2]; 27] {
         std::array::from_fn(|i| {

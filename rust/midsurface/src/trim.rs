@@ -7,8 +7,7 @@
 //! fraction rises far enough (hysteresis, as in Canny 1986). A region below ½ that comes to the end of
 //! the contour is no hole: it lies beyond a rim, and only the contour ends before it falls farther.
 
-use crate::components::DisjointSets;
-use crate::error::{check_count, collected, filled, push, reserved, zeros, Result};
+use crate::error::{check_count, collected, extend, filled, push, reserved, zeros, Result};
 use crate::grid::{along, sub, Vec3};
 use crate::halfedge::{ends, Edges};
 use crate::manifold::{split_points_among, Surface};
@@ -18,6 +17,9 @@ const RIM: f64 = 0.5;
 /// A hole is at least this empty somewhere, and a sheet this full.
 const HOLE: f64 = 0.25;
 const SHEET: f64 = 0.75;
+/// as far as so many rings of points around tell: along a rim something is certain somewhere, however
+/// far.
+const RINGS: usize = 16;
 /// Points this near to the cut, in the length of the edge that it crosses, are moved onto it.
 const SNAP: f32 = 0.3;
 /// Where hysteresis overruled the field a cut is this share of an edge away from its end.
@@ -147,29 +149,41 @@ fn snap(
 /// Whether each point stays.
 fn above(surface: &Surface, fraction: &[f64], last: Vec3) -> Result<Vec<bool>> {
     let mut above = collected(fraction.iter().map(|f| *f >= RIM))?;
-    let certain = |f: &f64| *f >= SHEET || *f <= HOLE;
-    let mut certain = collected(fraction.iter().map(certain))?;
-    let mut regions = DisjointSets::new(above.len())?;
+    let is_certain = |f: &f64| *f >= SHEET || *f <= HOLE;
+    let mut certain = collected(fraction.iter().map(is_certain))?;
+    tell_around(surface, &above, &mut certain)?;
+    let may_be_kept = |p: usize| !above[p] && !certain[p];
+    let at_end = at_end(surface, may_be_kept, last)?;
+    if !at_end.is_empty() {
+        at_end.into_iter().for_each(|p| certain[p] = true);
+        tell_around(surface, &above, &mut certain)?;
+    }
+    for (above, certain) in above.iter_mut().zip(certain) {
+        *above ^= !certain;
+    }
+    Ok(above)
+}
+
+/// Lets points that are certain tell those around on the same side of the cut.
+fn tell_around(surface: &Surface, above: &[bool], certain: &mut [bool]) -> Result<()> {
+    let mut open = Vec::new();
     for &[a, b, c] in &surface.triangles {
         for [p, q] in [[a, b], [b, c], [a, c]].map(|edge| edge.map(|p| p as usize)) {
-            // Whatever is certain need not be told so by its neighbours.
             if above[p] == above[q] && !(certain[p] && certain[q]) {
-                regions.join(p, q);
+                push(&mut open, [p, q])?;
             }
         }
     }
-    for p in 0..above.len() {
-        certain[regions.find(p)] |= certain[p];
+    for _ in 0..RINGS {
+        let is_news = |side: &&[usize; 2]| certain[side[0]] != certain[side[1]];
+        let told = collected(open.iter().filter(is_news).flatten().copied())?;
+        if told.is_empty() {
+            break;
+        }
+        told.into_iter().for_each(|p| certain[p] = true);
+        open.retain(|side| !side.iter().all(|&p| certain[p]));
     }
-    let may_be_kept = |p: usize| !above[p] && !certain[regions.find(p)];
-    let in_dip = collected((0..above.len()).map(may_be_kept))?;
-    for p in at_end(surface, |p| in_dip[p], last)? {
-        certain[regions.find(p)] = true;
-    }
-    for p in 0..above.len() {
-        above[p] ^= !certain[regions.find(p)];
-    }
-    Ok(above)
+    Ok(())
 }
 
 /// Points of edges where a contour of points below ½ ends, other than on the border of the volume.
@@ -189,7 +203,7 @@ fn at_end(surface: &Surface, below: impl Fn(usize) -> bool, last: Vec3) -> Resul
     for (a, b, group) in edges.groups() {
         let edge = [a, b].map(|p| p as usize);
         if group.len() == 1 && edge.into_iter().all(&below) && !on_border(edge) {
-            push(&mut found, edge[0])?;
+            extend(&mut found, edge)?;
         }
     }
     Ok(found)

@@ -46,7 +46,8 @@ pub(crate) fn weld(surface: &mut Surface, execution: &mut Execution) -> Result<(
     Ok(())
 }
 
-/// The half-edges of short edges, the shortest first.
+/// The half-edges of short edges, in the order in which they go: as a hash of their places tells. Along a
+/// straight rim lengths may go on falling, and the shortest first would decide about those far off.
 fn short_edges(surface: &Surface, execution: &Execution) -> Result<Vec<u32>> {
     let squared = |e: u32| {
         let (a, b) = ends(&surface.triangles, e);
@@ -59,8 +60,21 @@ fn short_edges(surface: &Surface, execution: &Execution) -> Result<Vec<u32>> {
     });
     let all = 0..is_short.len() as u32;
     let mut short = collected(all.filter(|&e| is_short[e as usize]))?;
-    short.sort_unstable_by(|&a, &b| squared(a).total_cmp(&squared(b)).then(a.cmp(&b)));
+    short.sort_unstable_by_key(|&e| (hash(surface, e), e));
     Ok(short)
+}
+
+/// A number made of the places of an edge's ends, by multiplicative hashing (Knuth).
+fn hash(surface: &Surface, e: u32) -> u64 {
+    let (a, b) = ends(&surface.triangles, e);
+    let of = |p: u32| {
+        let bits = surface.points[p as usize].map(f64::to_bits);
+        bits.iter().fold(0u64, |hash, bits| {
+            let hash = (hash ^ bits).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            hash ^ hash >> 32
+        })
+    };
+    (of(a) ^ of(b)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
 /// The fans of the ends of short edges, which are few, and of the points next to them; other points
@@ -188,7 +202,8 @@ mod tests {
 
     fn weld_all(surface: &mut Surface) {
         let mut quiet = Quiet::default();
-        weld(surface, &mut Execution::new(2, &mut quiet).unwrap()).unwrap();
+        let mut execution = Execution::new(2, &mut quiet).unwrap();
+        weld(surface, &mut execution).unwrap();
     }
 
     #[test]

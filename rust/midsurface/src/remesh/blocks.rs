@@ -13,7 +13,7 @@ use crate::halfedge::NONE;
 
 /// Triangles handed to a worker at a time.
 const PIECE: usize = 4096;
-/// Block of a point that more than one block uses.
+/// Block of a point that more than one block uses, or that is frozen for good.
 const SHARED: u32 = u32::MAX - 1;
 /// Marks the number of a point of the whole surface, among those of a block's own points.
 const GLOBAL: u32 = 1 << 31;
@@ -99,10 +99,16 @@ impl Blocks {
             for &t in &self.order[range] {
                 for p in surface.triangles[t as usize].map(|p| p as usize) {
                     if self.owner[p] == NONE {
-                        self.owner[p] = block as u32;
-                        self.rank[p] = ranked;
-                        self.valence[p] = u16::from(surface.vertices[p].is_boundary());
-                        ranked += 1;
+                        let vertex = &surface.vertices[p];
+                        self.valence[p] =
+                            u16::from(vertex.is_boundary()) + u16::from(vertex.beyond);
+                        if vertex.is_frozen() {
+                            self.owner[p] = SHARED;
+                        } else {
+                            self.owner[p] = block as u32;
+                            self.rank[p] = ranked;
+                            ranked += 1;
+                        }
                     } else if self.owner[p] != block as u32 {
                         self.owner[p] = SHARED;
                     }

@@ -221,6 +221,7 @@ impl Curve {
             size: mix(reference.sizes[v as usize], reference.sizes[w as usize]),
             at: number,
             kind: Kind::Boundary,
+            ..Vertex::default()
         }
     }
 }

@@ -62,6 +62,15 @@ pub(crate) struct Origin {
     pub weights: [f32; 3],
 }
 
+/// What triangles are before they are remeshed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Before {
+    Any,
+    /// Remeshed already, but for seams: only near these there is something to do, and where a mesh of
+    /// triangles twice as large would end at its border those of the final size would be poor.
+    Remeshed,
+}
+
 /// Side of a block in edge lengths.
 const BLOCK: f64 = 20.0;
 /// Shifts of the grid of blocks from pass to pass, in sides along each axis.
@@ -71,6 +80,8 @@ const FINE: f64 = 1.8;
 /// Passes at twice the final edge length, and at the final one.
 const COARSE_PASSES: usize = 4;
 const FINE_PASSES: usize = 2;
+/// Passes over what is remeshed already.
+const MENDING_PASSES: usize = 4;
 /// Times that points are moved in a pass.
 const RELAXATIONS: usize = 4;
 /// Points handed to a worker at a time.
@@ -86,32 +97,48 @@ pub(crate) fn remesh(
     edge_length: f64,
     execution: &mut Execution,
 ) -> Result<Remeshed> {
-    if triangles.is_empty() {
+    remesh_some(
+        (points, triangles),
+        |_| true,
+        (edge_length, Before::Any),
+        execution,
+    )
+}
+
+/// Remeshes the triangles that `is_own` names, as [`remesh`]; the points that others use too stay, and
+/// so do the edges between own triangles and others.
+pub(crate) fn remesh_some(
+    (points, triangles): (&[Vec3], &[[u32; 3]]),
+    is_own: impl Fn(usize) -> bool,
+    (edge_length, before): (f64, Before),
+    execution: &mut Execution,
+) -> Result<Remeshed> {
+    if !(0..triangles.len()).any(&is_own) {
         return Ok(Remeshed::default());
     }
-    let coarse = schedule(2.0 * edge_length);
-    let over_blocks = 2 * (coarse.len() + FINE_PASSES);
+    let (coarse, fine) = match before {
+        Before::Any => (schedule(2.0 * edge_length), FINE_PASSES),
+        Before::Remeshed => (Vec::new(), MENDING_PASSES),
+    };
+    let over_blocks = 2 * (coarse.len() + fine);
     execution.still(reference::PASSES + over_blocks + OTHER_PASSES);
     let reference = Reference::new(points, triangles, edge_length, execution)?;
-    let mut surface = start(&reference)?;
+    let mut surface = start(&reference, is_own)?;
     for (number, &longest) in coarse.iter().enumerate() {
         let blocks = Blocks::new(&surface, BLOCK * longest, shift(number), execution)?;
         surface = blocks.work(&surface, &reference, (2.0, longest), execution, improve)?;
     }
-    surface = subdivide(&surface, &reference, execution)?;
-    for number in 0..FINE_PASSES {
+    if !coarse.is_empty() {
+        surface = subdivide(&surface, &reference, execution)?;
+    }
+    for number in 0..fine {
         let blocks = Blocks::new(&surface, BLOCK * edge_length, shift(number), execution)?;
-        surface = blocks.work(
-            &surface,
-            &reference,
-            (1.0, edge_length),
-            execution,
-            |patch| {
-                improve(patch)?;
-                polish::polish(patch);
-                Ok(())
-            },
-        )?;
+        let scale = (1.0, edge_length);
+        surface = blocks.work(&surface, &reference, scale, execution, |patch| {
+            improve(patch)?;
+            polish::polish(patch);
+            Ok(())
+        })?;
     }
     surface = repair::repair(surface, &reference, edge_length, execution)?;
     execution.pass_done()?;
@@ -148,8 +175,8 @@ fn schedule(edge_length: f64) -> Vec<f64> {
     passes
 }
 
-/// The reference as the first surface.
-fn start(reference: &Reference) -> Result<Surface> {
+/// The own triangles of the reference as the first surface.
+fn start(reference: &Reference, is_own: impl Fn(usize) -> bool) -> Result<Surface> {
     let mut vertices = filled(Vertex::default(), reference.points.len())?;
     for (t, triangle) in reference.triangles.iter().enumerate() {
         for p in triangle.map(|p| p as usize) {
@@ -167,9 +194,17 @@ fn start(reference: &Reference) -> Result<Surface> {
         (vertex.at, vertex.parameter) = (number, parameter);
         vertex.kind = if corner { Kind::Corner } else { Kind::Boundary };
     }
+    let triangles = reference.triangles;
+    for (t, _) in triangles.iter().enumerate().filter(|(t, _)| !is_own(*t)) {
+        for p in triangles[t] {
+            let beyond = &mut vertices[p as usize].beyond;
+            *beyond = beyond.saturating_add(1);
+        }
+    }
+    let own = triangles.iter().enumerate().filter(|(t, _)| is_own(*t));
     Ok(Surface {
         vertices,
-        triangles: collected(reference.triangles.iter().copied())?,
+        triangles: collected(own.map(|(_, triangle)| *triangle))?,
     })
 }
 

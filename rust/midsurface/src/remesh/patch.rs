@@ -35,11 +35,16 @@ pub(super) struct Vertex {
     /// Interior points: the triangle of the reference; boundary points: the loop of its curve.
     pub at: u32,
     pub kind: Kind,
+    /// Number of triangles around it that are not remeshed: where there are some the point stays for good.
+    pub beyond: u8,
 }
 
 impl Vertex {
     pub fn normal(&self) -> Vec3 {
         self.normal.map(f64::from)
+    }
+    pub fn is_frozen(&self) -> bool {
+        self.beyond > 0
     }
     pub fn is_boundary(&self) -> bool {
         self.kind != Kind::Interior

@@ -19,7 +19,7 @@ use super::reference::Reference;
 use super::relax::relax;
 use super::shape::{facing, sine_of_smallest_angle};
 use super::split::near_middle;
-use crate::error::{collected, filled, reserved, zeros, Result};
+use crate::error::{collected, reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::halfedge::{next, previous, NONE};
 
@@ -86,7 +86,8 @@ fn near_faults(surface: &Surface) -> Result<Vec<bool>> {
     // Rings around the faults, whose points are 1.
     let mut ring: Vec<u8> = zeros(vertices.len())?;
     for (p, vertex) in vertices.iter().enumerate() {
-        let odd = vertex.kind == Kind::Interior && !(5..=7).contains(&valence[p]);
+        let odd =
+            vertex.kind == Kind::Interior && !vertex.is_frozen() && !(5..=7).contains(&valence[p]);
         ring[p] = u8::from(odd);
     }
     for t in triangles {
@@ -133,9 +134,10 @@ fn cut_out<'a>(
     }
     let local = |p: u32| number[p as usize].checked_sub(1);
     // Points with triangles beyond are frozen.
-    let mut frozen = filled(false, points.len())?;
     let vertices = collected(points.iter().map(|&p| surface.vertices[p as usize]))?;
-    let mut valence = collected(vertices.iter().map(|v| i32::from(v.is_boundary())))?;
+    let mut frozen = collected(vertices.iter().map(|v| v.is_frozen()))?;
+    let beyond = |v: &Vertex| i32::from(v.is_boundary()) + i32::from(v.beyond);
+    let mut valence = collected(vertices.iter().map(beyond))?;
     for (t, &near) in surface.triangles.iter().zip(near) {
         for p in t.iter().filter_map(|&p| local(p)) {
             valence[p as usize] += 1;

@@ -36,10 +36,21 @@ pub(super) fn subdivide(
             firsts.len() as u32 - 1
         };
     }
+    // Beside triangles that are not remeshed edges stay whole.
+    let is_kept = |e: usize| {
+        let (a, b) = ends(old, e as u32);
+        twins[e] == NONE
+            && [a, b]
+                .iter()
+                .all(|&p| surface.vertices[p as usize].is_frozen())
+    };
     let mut middles = filled(Vertex::default(), firsts.len())?;
     execution.fill(&mut middles, PIECE, |piece, out| {
         for (i, vertex) in out.iter_mut().enumerate() {
             let e = firsts[piece * PIECE + i];
+            if is_kept(e as usize) {
+                continue;
+            }
             let (a, b) = ends(old, e);
             let ends = [a, b].map(|p| &surface.vertices[p as usize]);
             *vertex = middle_anyway(reference, ends, twins[e as usize] == NONE);
@@ -51,9 +62,14 @@ pub(super) fn subdivide(
             let t = piece * PIECE + i;
             let [a, b, c] = old[t];
             let [d, e, f] = [0, 1, 2].map(|k| count as u32 + edge[3 * t + k]);
-            four.copy_from_slice(&[[a, d, f], [d, b, e], [f, e, c], [d, e, f]]);
+            let kept = [0, 1, 2].map(|k| is_kept(3 * t + k));
+            four.copy_from_slice(&match kept.iter().filter(|kept| **kept).count() {
+                0 => [[a, d, f], [d, b, e], [f, e, c], [d, e, f]],
+                _ => fewer([[a, d], [b, e], [c, f]], kept),
+            });
         }
     })?;
+    triangles.retain(|t| t[0] != NONE);
     let mut vertices = reserved(count + middles.len())?;
     vertices.extend_from_slice(&surface.vertices);
     vertices.extend(middles);
@@ -61,4 +77,20 @@ pub(super) fn subdivide(
         vertices,
         triangles,
     })
+}
+
+/// The triangles that a triangle of which some edges are kept becomes; there may be less than four. Each
+/// corner comes with the middle of the edge that leaves it.
+fn fewer(corners: [[u32; 2]; 3], kept: [bool; 3]) -> [[u32; 3]; 4] {
+    const NOTHING: [u32; 3] = [NONE; 3];
+    let turned = |k: usize| -> [[u32; 2]; 3] { std::array::from_fn(|i| corners[(k + i) % 3]) };
+    let count = kept.iter().filter(|kept| **kept).count();
+    // The one edge that is kept, or the one that is not, is the first.
+    let first = kept.iter().position(|kept| *kept == (count == 1));
+    let [[a, d], [b, e], [c, f]] = turned(first.unwrap_or(0));
+    match count {
+        1 => [[f, e, c], [a, b, e], [a, e, f], NOTHING],
+        2 => [[a, d, c], [d, b, c], NOTHING, NOTHING],
+        _ => [[a, b, c], NOTHING, NOTHING, NOTHING],
+    }
 }
