@@ -1,10 +1,11 @@
 """Measures the memory of several processes that share a volume of a thousand million voxels.
 
-    mpiexec -n 4 pvbatch --symmetric benchmarks/processes.py PLUGIN FOLDER
+    mpiexec -n 4 pvbatch --symmetric benchmarks/processes.py PLUGIN FOLDER vesicles
 
-The volume, 1024 x 1024 x 1024 bytes with 48 vesicles, is written to FOLDER where it is not there yet
-(with one process). Each process prints its peak memory beyond ParaView: its part of the volume and
-its share of the work.
+The volume, 1024 x 1024 x 1024 bytes with 48 vesicles, or with one wavy sheet where the last word is
+`sheet`, is written to FOLDER where it is not there yet (with one process). Each process prints its peak
+memory beyond ParaView: its part of the volume and its share of the work. The first prints what the
+table says of all.
 """
 import sys
 import time
@@ -26,14 +27,19 @@ def vesicle():
     return (abs(np.sqrt(x * x + y * y + z * z) - RADIUS) <= 0.5 * THICKNESS).astype(np.uint8)
 
 
-def write_volume(path):
-    volume = np.memmap(path, np.uint8, "w+", shape=(SIDE, SIDE, SIDE))
+def write_sheet(volume):
+    y, x = np.mgrid[:SIDE, :SIDE]
+    height = 0.5 * SIDE + 40 * np.sin(x / 150) * np.cos(y / 170)
+    for z in range(SIDE // 2 - 64, SIDE // 2 + 64):
+        volume[z] = abs(z - height) <= 4.5
+
+
+def write_vesicles(volume):
     cells = SIDE // CELL
     # A step without a common divisor spreads them evenly.
     for cell in (11 * np.arange(VESICLES)) % cells**3:
         z, y, x = (CELL * np.array(np.unravel_index(cell, (cells,) * 3))).tolist()
         volume[z : z + CELL, y : y + CELL, x : x + CELL] = vesicle()
-    volume.flush()
 
 
 def memory(field):
@@ -44,12 +50,15 @@ def memory(field):
 
 
 def main():
-    plugin, folder = sys.argv[1:]
+    plugin, folder, content = sys.argv[1:]
     controller = vtkMultiProcessController.GetGlobalController()
-    path = Path(folder) / "vesicles.raw"
+    path = Path(folder) / f"{content}.raw"
     if not path.exists():
         assert controller.GetNumberOfProcesses() == 1, "write the volume with one process first"
-        write_volume(path)
+        volume = np.memmap(path, np.uint8, "w+", shape=(SIDE, SIDE, SIDE))
+        {"vesicles": write_vesicles, "sheet": write_sheet}[content](volume)
+        volume.flush()
+        del volume
     simple.LoadPlugin(plugin, remote=False, ns=vars(simple))
     before = memory("VmRSS")
     reader = simple.ImageReader(
@@ -68,6 +77,12 @@ def main():
         f"{memory('VmHWM') - before:.0f} MB, {seconds:.0f} s, {piece.GetNumberOfCells():,} triangles",
         flush=True,
     )
+    statistics = simple.MidSurfaceStatistics(Input=mesh)
+    statistics.UpdatePipeline()
+    table = statistics.GetClientSideObject().GetOutputDataObject(0)
+    if table.GetNumberOfRows() > 0:
+        names = ("Points", "Triangles", "EulerNumber", "BoundaryLoops", "V567")
+        print(*(f"{name} {table.GetValueByName(0, name)}" for name in names), sep=", ", flush=True)
 
 
 if __name__ == "__main__":

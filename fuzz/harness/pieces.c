@@ -64,6 +64,7 @@ static void measure(midsurface_mesh* mesh, const midsurface_exchange* exchange)
     .thickness = arrays.thickness,
     .labels = arrays.labels,
     .components = arrays.components,
+    .point_ids = arrays.point_ids,
   };
   midsurface_statistics* table = NULL;
   midsurface_error* error = NULL;

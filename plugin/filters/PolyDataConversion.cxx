@@ -90,7 +90,7 @@ void CopyMeshPiece(const midsurface_mesh_arrays& mesh, vtkPolyData* output)
 {
   CopyMesh(mesh, output);
   output->GetPointData()->SetGlobalIds(
-    NumberFrom("GlobalPointIds", mesh.first_point, mesh.point_count));
+    CopyArray<vtkIdTypeArray>("GlobalPointIds", mesh.point_ids, mesh.point_count));
   output->GetCellData()->SetGlobalIds(
     NumberFrom("GlobalCellIds", mesh.first_triangle, mesh.triangle_count));
 }

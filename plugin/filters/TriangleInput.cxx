@@ -5,6 +5,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 
 #include <new>
@@ -17,6 +18,7 @@ TriangleInput::TriangleInput(vtkPolyData* input)
   this->View.point_count = static_cast<size_t>(input->GetNumberOfPoints());
   this->View.points = Coordinates(input, this->Points);
   this->View.thickness = PointValues(input, "Thickness", this->Thickness);
+  this->View.point_ids = WholeNumbers(input->GetPointData()->GetGlobalIds(), 0, this->PointIds);
   this->ReadTriangles();
   this->View.labels = this->TriangleValues("Label", this->Labels);
   this->View.components = this->TriangleValues("Component", this->Components);

@@ -33,6 +33,7 @@ private:
   vtkSmartPointer<vtkDataArray> Thickness;
   vtkSmartPointer<vtkDataArray> Labels;
   vtkSmartPointer<vtkDataArray> Components;
+  vtkSmartPointer<vtkDataArray> PointIds;
 };
 
 #endif

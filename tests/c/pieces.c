@@ -113,7 +113,11 @@ static void check_components(bool zips, const midsurface_options* options)
     {
       const midsurface_mesh_arrays arrays = arrays_of(processes[i].mesh);
       CHECK(arrays.triangle_count > 0);
-      CHECK(arrays.first_point == points && arrays.first_triangle == triangles);
+      CHECK(arrays.first_triangle == triangles);
+      for (size_t p = 0; p < arrays.point_count; p++)
+      {
+        CHECK(arrays.point_ids[p] == (int64_t)(points + p));
+      }
       points += arrays.point_count;
       triangles += arrays.triangle_count;
       for (size_t t = 1; t < arrays.triangle_count; t++)
@@ -125,7 +129,7 @@ static void check_components(bool zips, const midsurface_options* options)
   }
   CHECK(points == arrays_of(all).point_count);
   CHECK(triangles == arrays_of(all).triangle_count);
-  CHECK(arrays_of(all).first_point == 0 && arrays_of(all).first_triangle == 0);
+  CHECK(arrays_of(all).point_ids == NULL && arrays_of(all).first_triangle == 0);
   midsurface_mesh_free(all);
 }
 
@@ -230,6 +234,27 @@ static void the_first_process_gets_the_table_of_all(void)
   meshes[1].components = components;
   Process split[2] = { { .triangles = &meshes[0] }, { .triangles = &meshes[1] } };
   check_failures(split, "spread over several processes", "process 0 failed");
+
+  /* Two triangles of a component with an edge in common. */
+  const int64_t ids[][3] = { { 7, 0, 3 }, { 3, 0, 5 } };
+  const double beside[] = { 0, 2, 0, 2, 0, 0, 2, 2, 0 };
+  meshes[1].points = beside;
+  for (int i = 0; i < 2; i++)
+  {
+    meshes[i].point_ids = ids[i];
+  }
+  Process joined[2] = { { .triangles = &meshes[0] }, { .triangles = &meshes[1] } };
+  run_both(joined);
+  CHECK(joined[0].status == MIDSURFACE_STATUS_OK && joined[1].status == MIDSURFACE_STATUS_OK);
+  if (CHECK(midsurface_statistics_length(joined[0].table) == 3))
+  {
+    const midsurface_statistics_row* square = midsurface_statistics_rows(joined[0].table) + 2;
+    CHECK(square->points == 4 && square->triangles == 2 && square->area == 4.0);
+    CHECK(square->euler_number == 1 && square->boundary_loops == 1);
+    CHECK(square->boundary_length == 8.0);
+  }
+  midsurface_statistics_free(joined[0].table);
+  midsurface_statistics_free(joined[1].table);
 }
 
 static bool send_nothing(void* user, size_t to, const int64_t* numbers, size_t length)

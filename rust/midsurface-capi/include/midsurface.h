@@ -347,9 +347,10 @@ typedef struct midsurface_mesh_arrays {
    */
   const int64_t *components;
   /**
-   * Number of the first point among those of all processes; 0 where there is one.
+   * Numbers of the points among those of all processes, point_count values; NULL for a mesh of
+   * midsurface_extract. A point that is another process's, too, has the same number there.
    */
-  uint64_t first_point;
+  const int64_t *point_ids;
   /**
    * Number of the first triangle among those of all processes; 0 where there is one.
    */
@@ -452,6 +453,11 @@ typedef struct midsurface_triangle_mesh {
    * Component of each triangle: triangle_count values. May be NULL: no rows for components.
    */
   const int64_t *components;
+  /**
+   * Numbers of the points among those of all processes: point_count values. May be NULL: no point is
+   * another process's, too.
+   */
+  const int64_t *point_ids;
 } midsurface_triangle_mesh;
 
 /**
@@ -613,10 +619,11 @@ enum midsurface_status midsurface_extract(const struct midsurface_volume *volume
 
 /**
  * Extracts the mid-surface of a label volume of which each of several processes holds a piece. Each
- * process gets the mesh of whole components, numbered as in the whole volume, or an empty one: the
- * meshes share no points, and all together are midsurface_extract's mesh. All processes have to
- * call this at once, with the same options; where one fails, all do. Warnings about the whole
- * volume come in the first process.
+ * process gets the mesh of whole components, numbered as in the whole volume, or an empty one. Of a
+ * component of more than four million voxels each gets a part: only then the meshes share points, and
+ * never triangles. All together are midsurface_extract's mesh. All processes have to call this at once,
+ * with the same options; where one fails, all do. Warnings about the whole volume come in the first
+ * process.
  *
  * piece: what this process holds, as described there.
  * exchange: how it reaches the others.
@@ -801,9 +808,10 @@ enum midsurface_status midsurface_measure(const struct midsurface_triangle_mesh 
                                           struct midsurface_error **error);
 
 /**
- * Measures a mesh of which each of several processes holds whole components, as
- * midsurface_extract_piece makes them: as midsurface_measure does, in all. All processes have to
- * call this at once; the first gets the table, the others an empty one.
+ * Measures a mesh of which each of several processes holds a piece, as midsurface_extract_piece makes
+ * them: as midsurface_measure does, in all. A component of several processes is put together on one of
+ * them, which takes the numbers of its points. All processes have to call this at once; the first gets
+ * the table, the others an empty one.
  *
  * mesh: what this process holds, maybe nothing.
  * exchange: how it reaches the others.

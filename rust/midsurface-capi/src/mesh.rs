@@ -15,7 +15,7 @@ use crate::volume::midsurface_volume;
 #[derive(Debug)]
 pub struct midsurface_mesh {
     mesh: Mesh,
-    first_point: u64,
+    point_ids: Vec<i64>,
     first_triangle: u64,
     /// Indices as C takes them.
     triangles: Vec<[i64; 3]>,
@@ -35,6 +35,7 @@ impl midsurface_mesh {
         // C reads as many values as the view says: arrays that are shorter must not get there.
         assert_eq!(mesh.normals.len(), mesh.points.len());
         assert_eq!(mesh.thickness.len(), mesh.points.len());
+        assert!([0, mesh.points.len()].contains(&piece.point_ids.len()));
         assert_eq!(mesh.labels.len(), mesh.triangles.len());
         assert_eq!(mesh.components.len(), mesh.triangles.len());
         let triangles = mesh.triangles.iter().map(|t| t.map(i64::from));
@@ -42,7 +43,7 @@ impl midsurface_mesh {
         Ok(Self {
             triangles: collected(mesh.triangles.len(), triangles)?,
             components: collected(mesh.components.len(), components)?,
-            first_point: piece.first_point,
+            point_ids: piece.point_ids,
             first_triangle: piece.first_triangle,
             mesh,
         })
@@ -59,7 +60,7 @@ impl midsurface_mesh {
             triangle_count: mesh.triangles.len(),
             labels: address(&mesh.labels),
             components: address(&self.components),
-            first_point: self.first_point,
+            point_ids: address(&self.point_ids),
             first_triangle: self.first_triangle,
         }
     }
@@ -87,8 +88,9 @@ pub struct midsurface_mesh_arrays {
     /// Component of each triangle: the label's 26-connected component, numbered from 0 by label,
     /// then by size, the largest first; triangle_count values.
     pub components: *const i64,
-    /// Number of the first point among those of all processes; 0 where there is one.
-    pub first_point: u64,
+    /// Numbers of the points among those of all processes, point_count values; NULL for a mesh of
+    /// midsurface_extract. A point that is another process's, too, has the same number there.
+    pub point_ids: *const i64,
     /// Number of the first triangle among those of all processes; 0 where there is one.
     pub first_triangle: u64,
 }
@@ -103,7 +105,7 @@ impl midsurface_mesh_arrays {
         triangle_count: 0,
         labels: std::ptr::null(),
         components: std::ptr::null(),
-        first_point: 0,
+        point_ids: std::ptr::null(),
         first_triangle: 0,
     };
 }
@@ -130,10 +132,11 @@ pub unsafe extern "C" fn midsurface_extract(
 }
 
 /// Extracts the mid-surface of a label volume of which each of several processes holds a piece. Each
-/// process gets the mesh of whole components, numbered as in the whole volume, or an empty one: the
-/// meshes share no points, and all together are midsurface_extract's mesh. All processes have to
-/// call this at once, with the same options; where one fails, all do. Warnings about the whole
-/// volume come in the first process.
+/// process gets the mesh of whole components, numbered as in the whole volume, or an empty one. Of a
+/// component of more than four million voxels each gets a part: only then the meshes share points, and
+/// never triangles. All together are midsurface_extract's mesh. All processes have to call this at once,
+/// with the same options; where one fails, all do. Warnings about the whole volume come in the first
+/// process.
 ///
 /// piece: what this process holds, as described there.
 /// exchange: how it reaches the others.

@@ -25,6 +25,9 @@ pub struct midsurface_triangle_mesh {
     pub labels: *const i64,
     /// Component of each triangle: triangle_count values. May be NULL: no rows for components.
     pub components: *const i64,
+    /// Numbers of the points among those of all processes: point_count values. May be NULL: no point is
+    /// another process's, too.
+    pub point_ids: *const i64,
 }
 
 /// What a row is about.
@@ -139,9 +142,10 @@ pub unsafe extern "C" fn midsurface_measure(
     }
 }
 
-/// Measures a mesh of which each of several processes holds whole components, as
-/// midsurface_extract_piece makes them: as midsurface_measure does, in all. All processes have to
-/// call this at once; the first gets the table, the others an empty one.
+/// Measures a mesh of which each of several processes holds a piece, as midsurface_extract_piece makes
+/// them: as midsurface_measure does, in all. A component of several processes is put together on one of
+/// them, which takes the numbers of its points. All processes have to call this at once; the first gets
+/// the table, the others an empty one.
 ///
 /// mesh: what this process holds, maybe nothing.
 /// exchange: how it reaches the others.
@@ -180,6 +184,7 @@ unsafe fn read<'a>(
             thickness: optional_slice(mesh.thickness, points, "mesh.thickness")?,
             labels: optional_slice(mesh.labels, triangles, "mesh.labels")?,
             components: optional_slice(mesh.components, triangles, "mesh.components")?,
+            point_ids: optional_slice(mesh.point_ids, points, "mesh.point_ids")?,
         })
     }
 }

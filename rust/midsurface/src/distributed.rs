@@ -12,25 +12,29 @@ use crate::exchange::{Exchange, Team};
 use crate::execution::{Collected, Execution, Observer};
 use crate::findings::Findings;
 use crate::grid::Grid;
+use crate::lots::Sizes;
 use crate::mesh::Mesh;
+use crate::numbering::{first_of_own, point_ids, Key};
 use crate::pieces::{gather_parts, Share};
 use crate::polylines::Polylines;
 use crate::volume::Volume;
-use crate::{find_surface, trace_polylines, write_fields, zip, Fields, Options};
+use crate::{find_surface, trace_polylines, write_fields, zip, Fields, Method, Options};
 
 /// The part of a mesh that one process holds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MeshPiece {
-    /// Points and triangles, numbered from 0. No point is another process's, too.
+    /// Points and triangles, numbered from 0.
     pub mesh: Mesh,
-    /// Number of the first point among those of all processes.
-    pub first_point: u64,
-    /// Number of the first triangle among those of all processes.
+    /// Numbers of the points among those of all processes. A point of a component that several processes
+    /// share may be another one's, too: it is the same to the bit, and has the same number.
+    pub point_ids: Vec<i64>,
+    /// Number of the first triangle among those of all processes. No triangle is another process's, too.
     pub first_triangle: u64,
 }
 
 /// The mid-surface. Each process gets the mesh of whole components, as [`crate::extract`] numbers
-/// them; all of them together are what that makes of the whole volume.
+/// them, and a part of the mesh of each that is too large for one; all of them together are what that
+/// makes of the whole volume.
 ///
 /// # Errors
 /// As [`crate::extract`], and where the pieces do not make up the whole or the options differ.
@@ -41,11 +45,27 @@ pub fn extract_piece(
     exchange: &mut dyn Exchange,
     observer: &mut dyn Observer,
 ) -> Result<MeshPiece> {
+    extract_piece_in(piece, whole, (options, Sizes::USUAL), exchange, observer)
+}
+
+/// The same, with components of any size in tiles.
+pub(crate) fn extract_piece_in(
+    piece: Option<&Volume>,
+    whole: &Grid,
+    (options, sizes): (&Options, Sizes),
+    exchange: &mut dyn Exchange,
+    observer: &mut dyn Observer,
+) -> Result<MeshPiece> {
     in_team(options, exchange, observer, |team, execution| {
         execution.within(0.0, options.tracing());
-        let parts = gather_parts(piece, whole, options, Share::One, team, execution)?;
-        let (mesh, findings) = find_surface(&parts, whole, options, execution)?;
-        Ok((count_in(mesh, team)?, findings))
+        let most = match options.method {
+            Method::PolylineZipper => usize::MAX,
+            Method::RidgeSurface => sizes.most_voxels,
+        };
+        let parts = gather_parts(piece, whole, options, Share::One(most), team, execution)?;
+        let found = find_surface(&parts, whole, (options, sizes), team, execution)?;
+        let piece = numbered(found.mesh, &found.shared, team)?;
+        Ok((piece, found.findings))
     })
 }
 
@@ -61,7 +81,14 @@ pub fn mid_polylines_piece(
     observer: &mut dyn Observer,
 ) -> Result<Polylines> {
     in_team(options, exchange, observer, |team, execution| {
-        let parts = gather_parts(piece, whole, options, Share::One, team, execution)?;
+        let parts = gather_parts(
+            piece,
+            whole,
+            options,
+            Share::One(usize::MAX),
+            team,
+            execution,
+        )?;
         let (polylines, disks) = trace_polylines(&parts, whole, execution, 1.0)?;
         let findings = Findings {
             disks,
@@ -87,7 +114,7 @@ pub fn zip_polylines_piece(
         check_held_by_one(polylines, team)?;
         let mut findings = Findings::default();
         let mesh = zip(polylines, &mut findings, 1.0, execution)?;
-        Ok((count_in(mesh, team)?, findings))
+        Ok((numbered(mesh, &[], team)?, findings))
     })
 }
 
@@ -193,17 +220,11 @@ fn check_held_by_one(polylines: &Polylines, team: &mut Team) -> Result<()> {
     }
 }
 
-/// A process's mesh, with its place among those of all.
-fn count_in(mesh: Mesh, team: &mut Team) -> Result<MeshPiece> {
-    let own = [mesh.points.len() as i64, mesh.triangles.len() as i64];
-    let of_all = team.share(&own)?;
-    let before = |which: usize| {
-        let earlier = of_all.iter().take(team.process());
-        earlier.filter_map(|counts| counts.get(which)).sum::<i64>() as u64
-    };
+/// A process's mesh, with the numbers among those of all.
+fn numbered(mesh: Mesh, shared: &[(Key, u32)], team: &mut Team) -> Result<MeshPiece> {
     Ok(MeshPiece {
-        first_point: before(0),
-        first_triangle: before(1),
+        point_ids: point_ids(mesh.points.len(), shared, team)?,
+        first_triangle: first_of_own(mesh.triangles.len(), team)? as u64,
         mesh,
     })
 }

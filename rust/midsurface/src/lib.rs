@@ -39,9 +39,10 @@
 //! batches of whole components, two side by side (`batches.rs`), so that memory follows the largest
 //! batches, and depends on places in the volume only, never on the order of work: any number of
 //! threads gives the same mesh. A component that is larger than a batch should be is cut into tiles
-//! (`lots.rs`, `tiles.rs`, `tiled_surface.rs`) for the ridge surface. So does any number of processes that hold a piece of the volume each:
-//! they swap runs (`exchange.rs`) until each has whole components (`territory.rs`, `pieces.rs`), and
-//! what follows is the same.
+//! (`lots.rs`, `tiles.rs`, `tiled_surface.rs`) for the ridge surface. Processes that hold a piece of the
+//! volume each give the same mesh, too, however many they are: they swap runs (`exchange.rs`) until each has whole components
+//! (`territory.rs`, `pieces.rs`), and what follows is the same; tiles are dealt to all processes, which
+//! swap what lies between them.
 #![forbid(unsafe_code)]
 
 mod batches;
@@ -86,6 +87,7 @@ mod mesh;
 mod midway;
 mod mosaic;
 mod normals;
+mod numbering;
 mod pieces;
 mod polylines;
 mod profile;
@@ -94,6 +96,7 @@ mod ray;
 mod reach;
 mod reading;
 mod region;
+mod regroup;
 mod remesh;
 mod resample;
 mod ridge;
@@ -142,6 +145,7 @@ use findings::Findings;
 pub use grid::{Grid, Vec3};
 use lots::Sizes;
 pub use mesh::{InvariantViolation, Mesh};
+use numbering::Key;
 pub use polylines::{Polyline, Polylines};
 pub use quality::Quality;
 use reading::{read_parts, READING};
@@ -206,10 +210,18 @@ pub fn extract(volume: &Volume, options: &Options, observer: &mut dyn Observer) 
     options.check()?;
     let mut execution = Execution::new(options.threads, observer)?;
     let parts = read_parts(volume, options, &mut execution, options.tracing())?;
-    let (mesh, findings) = find_surface(&parts, &volume.grid, options, &mut execution)?;
-    findings.warn(&mut execution);
+    let mut alone = Alone;
+    let team = &mut Team::new(&mut alone);
+    let found = find_surface(
+        &parts,
+        &volume.grid,
+        (options, Sizes::USUAL),
+        team,
+        &mut execution,
+    )?;
+    found.findings.warn(&mut execution);
     execution.finish()?;
-    Ok(mesh)
+    Ok(found.mesh)
 }
 
 /// The distinct labels of a volume, ascending; 0 is background.
@@ -289,31 +301,45 @@ pub fn zip_polylines(
     Ok(mesh)
 }
 
-/// The surface of whole components by the method chosen, and what there is to tell about it.
+/// The surface of components by the method chosen, and what there is to tell about it.
+#[derive(Default)]
+struct Found {
+    mesh: Mesh,
+    /// The points that other processes may have, too.
+    shared: Vec<(Key, u32)>,
+    findings: Findings,
+}
+
+/// Those that are worked on in tiles all processes have to have.
 fn find_surface(
     parts: &[Part],
     grid: &Grid,
-    options: &Options,
+    (options, sizes): (&Options, Sizes),
+    team: &mut Team,
     execution: &mut Execution,
-) -> Result<(Mesh, Findings)> {
-    let mut findings = Findings::default();
-    let mesh = match options.method {
+) -> Result<Found> {
+    let mut found = Found::default();
+    match options.method {
         Method::PolylineZipper => {
+            let findings = &mut found.findings;
             let (polylines, disks) = trace_polylines(parts, grid, execution, options.tracing())?;
             findings.disks = disks;
-            match options.edge_length {
-                0.0 => zip(&polylines, &mut findings, 1.0, execution)?,
+            found.mesh = match options.edge_length {
+                0.0 => zip(&polylines, findings, 1.0, execution)?,
                 length => {
-                    let mesh = zip(&polylines, &mut findings, ZIPPED, execution)?;
+                    let mesh = zip(&polylines, findings, ZIPPED, execution)?;
                     drop(polylines);
                     execution.stage("Remeshing", ZIPPED, 1.0, 1)?;
                     mesh.with_edge_length(length, grid.unit(), execution)?
                 }
             }
         }
-        Method::RidgeSurface => find_ridge_surface(parts, grid, options, &mut findings, execution)?,
-    };
-    Ok((mesh, findings))
+        Method::RidgeSurface => {
+            let size = (options.edge_length, sizes);
+            find_ridge_surface(parts, grid, size, &mut found, team, execution)?;
+        }
+    }
+    Ok(found)
 }
 
 /// Where fields go: arrays of shape (z, y, x) whose first voxel is the volume's voxel `first`, x, y, z.
@@ -384,23 +410,17 @@ fn trace_polylines(
 fn find_ridge_surface(
     parts: &[Part],
     grid: &Grid,
-    options: &Options,
-    findings: &mut Findings,
+    (edge_length, sizes): (f64, Sizes),
+    found: &mut Found,
+    team: &mut Team,
     execution: &mut Execution,
-) -> Result<Mesh> {
-    let mut mesh = Mesh::default();
-    let sizes = Sizes::USUAL;
-    let mut alone = Alone;
-    findings.is_slice = grid.dimensions.contains(&1);
-    if findings.is_slice {
-        return Ok(mesh);
+) -> Result<()> {
+    found.findings.is_slice = grid.dimensions.contains(&1);
+    if found.findings.is_slice {
+        return Ok(());
     }
     let work = |parts: &[Part], execution: &mut Execution| {
-        ridge_surface::ridge_surface(parts, grid, options.edge_length, execution)
-    };
-    let mut keep = |parts: &[Part], surface| {
-        findings.add_without(parts, &surface);
-        mesh.append(surface)
+        ridge_surface::ridge_surface(parts, grid, edge_length, execution)
     };
     let all: usize = parts.iter().map(Part::voxels).sum();
     let share = |voxels: usize| READING + (1.0 - READING) * voxels as f64 / all as f64;
@@ -411,19 +431,27 @@ fn find_ridge_surface(
         let span = [share(before), share(done)];
         if sizes.is_tiled(lot) {
             execution.within(span[0], span[1]);
-            let size = (options.edge_length, sizes.side);
-            let team = &mut Team::new(&mut alone);
-            let surface = tiled_surface(lot, grid, size, team, execution)?;
-            if let Some(surface) = surface {
-                keep(lot, surface)?;
+            let size = (edge_length, sizes.side);
+            if let Some(tiled) = tiled_surface(lot, grid, size, team, execution)? {
+                let first = found.mesh.points.len() as u32;
+                let shared = tiled.shared.into_iter();
+                error::extend(&mut found.shared, shared.map(|(key, p)| (key, first + p)))?;
+                found.mesh.append(tiled.mesh)?;
+                continue;
+            }
+            // All processes have the component; one works on it as a whole.
+            if lot[0].component as usize % team.processes() != team.process() {
                 continue;
             }
         }
-        for_each_batch(lot, execution, span, work, &mut keep)?;
+        for_each_batch(lot, execution, span, work, |parts, surface| {
+            found.findings.add_without(parts, &surface);
+            found.mesh.append(surface)
+        })?;
     }
-    findings.triangles = mesh.triangles.len();
-    findings.is_far = !parts.is_empty() && findings::is_volume_far(grid);
-    Ok(mesh)
+    found.findings.triangles = found.mesh.triangles.len();
+    found.findings.is_far = !parts.is_empty() && findings::is_volume_far(grid);
+    Ok(())
 }
 
 /// Takes the share `until` of what is left of the progress.

@@ -4,9 +4,9 @@
 //! It finds the components within its piece; the first process is told their sizes and the runs
 //! beside other pieces, joins what touches, numbers the components of the whole volume, and deals
 //! them out: each to one process, the largest first to the one that has least to do, where a surface
-//! is made, and where a field is written to all in whose pieces it is. So no process ever holds the
-//! volume or the whole mesh, as long as no single component is most of it. What follows sees whole
-//! components and cannot tell that there were pieces.
+//! is made, and where a field is written to all in whose pieces it is. One that is worked on in tiles
+//! (`tiled_surface.rs`) goes to all, as runs, so that each can number its parts. So no process ever holds
+//! the volume or the whole mesh. What follows sees whole components and cannot tell that there were pieces.
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
@@ -34,8 +34,8 @@ const LEFT_OUT: i64 = -1;
 /// Who works on a component.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Share {
-    /// One process.
-    One,
+    /// One process; all of them where it has more voxels than this.
+    One(usize),
     /// Every process near whose piece it is, as far as fields reach.
     Near,
 }
@@ -73,10 +73,14 @@ pub(crate) fn gather_parts(
     let found = LocalComponents::find(&runs)?;
     execution.pass_done()?;
     let near = match share {
-        Share::One => Vec::new(),
+        Share::One(_) => Vec::new(),
         Share::Near => found.near(&runs, &territory)?,
     };
-    let decided = found.agree(&runs, &near, &territory, voxels, team, execution)?;
+    let most = match share {
+        Share::One(most) => most,
+        Share::Near => usize::MAX,
+    };
+    let decided = found.agree(&runs, (&near, most), &territory, voxels, team, execution)?;
     let (runs, numbers) = deal_out(&runs, &found, &decided, team)?;
     let (mut parts, _) = parts(runs, execution)?;
     // Both count by label, then by size, then by place.
@@ -175,11 +179,11 @@ impl LocalComponents {
     }
 
     /// What the first process decides for each component. `near` names processes that have to work
-    /// on one; where there is none, one process is chosen.
+    /// on one; where there is none, one process is chosen, or all for more than `most` voxels.
     fn agree(
         &self,
         runs: &[Run],
-        near: &[[i64; 2]],
+        (near, most): (&[[i64; 2]], usize),
         territory: &Territory,
         voxels: usize,
         team: &mut Team,
@@ -200,7 +204,7 @@ impl LocalComponents {
         }
         let of_all = team.gather(message)?;
         let answers = if team.is_first() {
-            decide(&of_all, voxels, team.processes(), execution)?
+            decide(&of_all, (voxels, most), team.processes(), execution)?
         } else {
             Vec::new()
         };
@@ -294,14 +298,14 @@ impl Gathered {
 /// Joins the components of all pieces, and answers each process as [`LocalComponents::agree`] says.
 fn decide(
     of_all: &[Vec<i64>],
-    voxels: usize,
+    (voxels, most): (usize, usize),
     processes: usize,
     execution: &mut Execution,
 ) -> Result<Vec<Vec<i64>>> {
     let mut all = Gathered::read(of_all)?;
     let mut sets = join_across(&mut all.beside, all.components.len())?;
     let whole = join_components(&all.components, &mut sets)?;
-    let mut decisions = number_and_deal(&whole, voxels, processes, execution)?;
+    let mut decisions = number_and_deal(&whole, (voxels, most), processes, execution)?;
     let mut near = collected(all.near.iter().map(|&(c, process)| (sets.find(c), process)))?;
     near.sort_unstable();
     near.dedup();
@@ -365,10 +369,11 @@ fn join_components(
 }
 
 /// Numbers the joined components by label, then by size, the largest first, then by place, and
-/// gives the largest first to the process with the fewest voxels so far.
+/// gives the largest first to the process with the fewest voxels so far. Those of more than `most` go to
+/// all.
 fn number_and_deal(
     whole: &[Option<Component>],
-    voxels: usize,
+    (voxels, most): (usize, usize),
     processes: usize,
     execution: &mut Execution,
 ) -> Result<Vec<Decision>> {
@@ -398,6 +403,12 @@ fn number_and_deal(
     order.sort_unstable_by_key(|(i, c)| (Reverse(c.voxels), c.label, c.first, *i));
     let mut load = vec![0; processes];
     for (root, c) in &order {
+        if c.voxels as usize > most {
+            decisions[*root].workers = collected(0..processes as i64)?;
+            load.iter_mut()
+                .for_each(|load| *load += c.voxels / processes as i64);
+            continue;
+        }
         let owner = (0..processes).min_by_key(|&p| load[p]).unwrap_or(0);
         load[owner] += c.voxels;
         decisions[*root].workers = vec![owner as i64];

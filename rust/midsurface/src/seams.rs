@@ -384,3 +384,51 @@ fn told_by_all(own: &[usize], patches: &[Patches], team: &mut Team) -> Result<Ve
     all.sort_unstable_by_key(|(tile, _)| *tile);
     Ok(all)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exchange::Alone;
+    use crate::execution::Quiet;
+
+    /// A square of two triangles that are wound as told, and what a tile knows that has one of them.
+    fn half(own: usize, turned: [bool; 2]) -> Patches {
+        let mut surface = Surface {
+            points: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            source: vec![0; 4],
+        };
+        for (triangle, turned) in surface.triangles.iter_mut().zip(turned) {
+            if turned {
+                triangle.swap(1, 2);
+            }
+        }
+        let is_own = [own == 0, own == 1];
+        let mut quiet = Quiet::default();
+        let mut execution = Execution::new(1, &mut quiet).unwrap();
+        Patches::new(&surface, &is_own, &mut execution).unwrap()
+    }
+
+    fn agreed(tiles: &[usize], patches: &[Patches]) -> Option<Agreement> {
+        let mut alone = Alone;
+        let team = &mut Team::new(&mut alone);
+        agree(tiles, patches, team).unwrap()
+    }
+
+    #[test]
+    fn tiles_wind_their_patches_alike() {
+        let found = agreed(&[0, 1], &[half(0, [false; 2]), half(1, [false; 2])]).unwrap();
+        assert!(found.is_wound);
+        assert_eq!(found.turns[0], found.turns[1]);
+        let turned = [false, true];
+        let found = agreed(&[0, 1], &[half(0, turned), half(1, turned)]).unwrap();
+        assert!(!found.is_wound);
+        assert_ne!(found.turns[0], found.turns[1]);
+    }
+
+    #[test]
+    fn a_seam_that_another_tile_does_not_know_is_told() {
+        assert!(agreed(&[0], &[half(0, [false; 2])]).is_none());
+        assert!(agreed(&[3, 3], &[half(0, [false; 2]), half(1, [false; 2])]).is_none());
+    }
+}

@@ -2,8 +2,9 @@
 //!
 //! A mesh of any origin will do: edges with more than two triangles count once, and a point that
 //! no triangle uses counts for nothing. Labels and components share points only where the mesh
-//! does; each row counts the points that its own triangles use. Where processes hold whole components
-//! each, the first adds up what the others measured.
+//! does; each row counts the points that its own triangles use. Where processes hold a piece each, a
+//! component that several hold is first put together (`regroup.rs`), and in the end the first process adds
+//! up what the others measured.
 
 use std::collections::BTreeMap;
 
@@ -12,6 +13,7 @@ use crate::exchange::{Exchange, Team};
 use crate::grid::{length, sub, Vec3};
 use crate::halfedge::Edges;
 use crate::quality::{Quality, QualitySums};
+use crate::regroup::{regrouped, Regrouped};
 
 /// A triangle mesh, borrowed, with what may be known about its points and triangles.
 #[derive(Debug, Clone, Copy, Default)]
@@ -26,6 +28,8 @@ pub struct TriangleMesh<'a> {
     pub labels: Option<&'a [i64]>,
     /// Component of each triangle; `None`: no rows for components.
     pub components: Option<&'a [i64]>,
+    /// Numbers of the points among those of all processes; `None`: no point is another process's, too.
+    pub point_ids: Option<&'a [i64]>,
 }
 
 /// Which triangles a row is about.
@@ -96,12 +100,12 @@ pub fn statistics(mesh: &TriangleMesh) -> Result<Vec<Statistics>> {
     Ok(measure(mesh)?.into_iter().map(Row::finish).collect())
 }
 
-/// The table of a mesh of which each of several processes holds whole components. All processes have
-/// to call this at once; the first gets the table, the others an empty one.
+/// The table of a mesh of which each of several processes holds a piece. All processes have to call
+/// this at once; the first gets the table, the others an empty one.
 ///
 /// # Errors
 /// As [`statistics`], in all processes where one fails, and where several hold triangles of one
-/// component, or of a mesh without components.
+/// component whose points have no numbers, or of a mesh without components.
 pub fn statistics_of_pieces(
     mesh: &TriangleMesh,
     exchange: &mut dyn Exchange,
@@ -112,8 +116,11 @@ pub fn statistics_of_pieces(
 }
 
 fn measure_in_team(mesh: &TriangleMesh, team: &mut Team) -> Result<Vec<Statistics>> {
+    check(mesh)?;
+    let regrouped = regrouped(mesh, team)?;
+    let own = regrouped.as_ref().map(Regrouped::mesh);
     let mut message = Vec::new();
-    for row in measure(mesh)? {
+    for row in measure(own.as_ref().unwrap_or(mesh))? {
         row.pack(&mut message)?;
     }
     let of_all = team.gather(message)?;
@@ -179,6 +186,7 @@ fn check(mesh: &TriangleMesh) -> Result<()> {
         ("thickness", mesh.thickness.map(<[f32]>::len), points),
         ("label", mesh.labels.map(<[i64]>::len), triangles),
         ("component", mesh.components.map(<[i64]>::len), triangles),
+        ("point numbers", mesh.point_ids.map(<[i64]>::len), points),
     ] {
         if length.is_some_and(|length| length != needed) {
             let text = format!("the array of the {name} has another length than the mesh needs");

@@ -7,17 +7,15 @@ use crate::error::{collected, extend, filled, push, Result};
 use crate::halfedge::NONE;
 use crate::manifold::Surface;
 use crate::mesh::Mesh;
+use crate::numbering::Key;
 use crate::seams::{used_by, Patches};
 
-/// The part of a point, and its place to the bit.
-type PointKey = (u32, [u64; 3]);
-
-/// The mesh of a tile's own triangles.
+/// The mesh of the own triangles of a tile, or of several.
 #[derive(Default)]
 pub(crate) struct TileMesh {
-    mesh: Mesh,
+    pub mesh: Mesh,
     /// The points that other tiles' triangles use, too, and their numbers.
-    shared: Vec<(PointKey, u32)>,
+    pub shared: Vec<(Key, u32)>,
 }
 
 impl TileMesh {
@@ -28,14 +26,16 @@ impl TileMesh {
         let mut tile = Self::default();
         for t in (0..mesh.triangles.len()).filter(|&t| own[t]) {
             let triangle = mesh.triangles[t].map(|p| p as usize);
-            for p in triangle.into_iter() {
+            for p in triangle {
                 if number[p] != NONE {
                     continue;
                 }
                 number[p] = tile.mesh.points.len() as u32;
                 add_point(&mut tile.mesh, mesh, p)?;
                 if is_shared[p] {
-                    let key = (surface.source[p], surface.points[p].map(f64::to_bits));
+                    let [x, y, z] = surface.points[p].map(|v| v.to_bits() as i64);
+                    let whose = [mesh.components[t], surface.source[p]].map(i64::from);
+                    let key = [whose[0], whose[1], x, y, z];
                     push(&mut tile.shared, (key, number[p]))?;
                 }
             }
@@ -71,38 +71,37 @@ fn add_point(to: &mut Mesh, from: &Mesh, p: usize) -> Result<()> {
     push(&mut to.thickness, from.thickness[p])
 }
 
-/// The meshes of all tiles as one, in which shared points are one.
-pub(crate) fn assembled(tiles: Vec<TileMesh>) -> Result<Mesh> {
-    let mut shared: Vec<(PointKey, usize, u32)> = Vec::new();
+/// The meshes of the own tiles as one, in which shared points are one. These are told apart, with their
+/// numbers: other processes' tiles may have them, too.
+pub(crate) fn assembled(tiles: Vec<TileMesh>) -> Result<TileMesh> {
+    let mut shared: Vec<(Key, usize, u32)> = Vec::new();
     for (number, tile) in tiles.iter().enumerate() {
         let own = tile.shared.iter().map(|&(key, p)| (key, number, p));
         extend(&mut shared, own)?;
     }
     shared.sort_unstable();
-    // Of each tile its shared points, each with the number that it has among those of all.
-    let mut of_tile: Vec<Vec<(u32, u32)>> = collected(tiles.iter().map(|_| Vec::new()))?;
-    let mut count = 0;
+    // Of each tile its shared points, each with the place that it has among those of all.
+    let mut of_tile: Vec<Vec<(u32, usize)>> = collected(tiles.iter().map(|_| Vec::new()))?;
+    let mut known = Vec::new();
     for same in shared.chunk_by(|a, b| a.0 == b.0) {
         for &(_, tile, p) in same {
-            push(&mut of_tile[tile], (p, count))?;
+            push(&mut of_tile[tile], (p, known.len()))?;
         }
-        count += 1;
+        push(&mut known, (same[0].0, NONE))?;
     }
-    let mut known = filled(NONE, count as usize)?;
     let mut all = Mesh::default();
-    for (tile, mut shared) in tiles.into_iter().zip(of_tile) {
-        shared.sort_unstable();
+    for (tile, shared) in tiles.into_iter().zip(of_tile) {
         let mesh = tile.mesh;
         let mut number = filled(NONE, mesh.points.len())?;
         for &(p, same) in &shared {
-            number[p as usize] = known[same as usize];
+            number[p as usize] = known[same].1;
         }
         for (p, number) in number.iter_mut().enumerate().filter(|(_, n)| **n == NONE) {
             *number = all.points.len() as u32;
             add_point(&mut all, &mesh, p)?;
         }
         for &(p, same) in &shared {
-            known[same as usize] = number[p as usize];
+            known[same].1 = number[p as usize];
         }
         let triangles = mesh.triangles.iter();
         extend(
@@ -112,5 +111,8 @@ pub(crate) fn assembled(tiles: Vec<TileMesh>) -> Result<Mesh> {
         extend(&mut all.labels, mesh.labels)?;
         extend(&mut all.components, mesh.components)?;
     }
-    Ok(all)
+    Ok(TileMesh {
+        mesh: all,
+        shared: known,
+    })
 }

@@ -25,7 +25,6 @@ use crate::exchange::Team;
 use crate::execution::Execution;
 use crate::grid::{Grid, Vec3};
 use crate::manifold::Surface;
-use crate::mesh::Mesh;
 use crate::mosaic::{centre, chosen, gathered, kept, received, Corners, Piece};
 use crate::remesh::Before;
 use crate::seams::{agree, moved_alike, Moves, Patches, Point};
@@ -54,7 +53,7 @@ const ROUNDS_END: [f64; 4] = [0.65, 0.85, 0.91, 0.93];
 /// About how many passes a step between these makes.
 const MIDWAY_PASSES: usize = 40;
 
-/// The own tiles of the surface of a component, as a mesh. Edges are `edge_length` world units long, 0:
+/// The own tiles of the surface of a component. Edges are `edge_length` world units long, 0:
 /// the default. `None` where the tiles of all processes do not make up a surface.
 pub(crate) fn tiled_surface(
     parts: &[Part],
@@ -62,7 +61,7 @@ pub(crate) fn tiled_surface(
     (edge_length, side): (f64, usize),
     team: &mut Team,
     execution: &mut Execution,
-) -> Result<Option<Mesh>> {
+) -> Result<Option<TileMesh>> {
     let mut component = Component::new(parts, grid, (edge_length, side), team, execution)?;
     // With edges that long a tile would be finished with a margin wider than several tiles.
     if FINISH_REACH * component.stages.wanted > 2.0 * side as f64 {
@@ -333,7 +332,7 @@ impl<'a> Component<'a> {
         mut pieces: Vec<Piece>,
         team: &mut Team,
         execution: &mut Execution,
-    ) -> Result<Option<Mesh>> {
+    ) -> Result<Option<TileMesh>> {
         let reach = FINISH_REACH * self.stages.wanted;
         let boxes = self.boxes(reach)?;
         let others = self.received(&pieces, &boxes, team)?;

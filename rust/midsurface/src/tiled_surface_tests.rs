@@ -2,14 +2,22 @@
 
 use super::*;
 use crate::bricks::Batch;
-use crate::components;
 use crate::contour::contour;
 use crate::distance;
-use crate::exchange::Alone;
+use crate::distributed::{extract_piece_in, MeshPiece};
+use crate::exchange::{Alone, Exchange};
 use crate::execution::Quiet;
+use crate::lots::Sizes;
+use crate::mesh::Mesh;
+use crate::reading::read_parts;
 use crate::ridge_surface::{find_sheets, ridge_surface};
-use crate::runs::Run;
 use crate::statistics::{statistics, Statistics, TriangleMesh};
+use crate::volume::Volume;
+use crate::{extract, Options};
+use channels::connect;
+
+#[path = "../tests/extraction/channels.rs"]
+mod channels;
 
 /// Chance, −0.5 to 0.5, at a voxel.
 fn noise(p: [usize; 3]) -> f64 {
@@ -21,32 +29,26 @@ fn noise(p: [usize; 3]) -> f64 {
     (hash >> 40) as f64 / (1 << 24) as f64 - 0.5
 }
 
-/// The parts of the largest component of a made-up label: where a point's distance from the mid-surface
-/// is below half the thickness, 2.5, with rough faces.
-fn parts(dimensions: [usize; 3], distance: impl Fn([f64; 3]) -> f64) -> Vec<Part> {
-    let [nx, ny, nz] = dimensions;
-    let mut runs = Vec::new();
+/// A made-up label: where a point's distance from the mid-surface is below half the thickness, 2.5, with
+/// rough faces.
+fn labels([nx, ny, nz]: [usize; 3], distance: impl Fn([f64; 3]) -> f64) -> Vec<u8> {
+    let mut labels = Vec::new();
     for (z, y) in (0..nz).flat_map(|z| (0..ny).map(move |y| (z, y))) {
-        let is_in = |&x: &usize| {
+        labels.extend((0..nx).map(|x| {
             let place = [x, y, z];
-            distance(place.map(|v| v as f64)) < 2.5 + 0.8 * noise(place)
-        };
-        let mut x = 0;
-        while let Some(start) = (x..nx).find(is_in) {
-            let end = (start..nx).find(|x| !is_in(x)).unwrap_or(nx);
-            runs.push(Run {
-                label: 1,
-                z: z as u32,
-                y: y as u32,
-                start: start as u32,
-                end: end as u32,
-            });
-            x = end;
-        }
+            u8::from(distance(place.map(|v| v as f64)) < 2.5 + 0.8 * noise(place))
+        }));
     }
+    labels
+}
+
+/// The parts of the largest component of such a label.
+fn parts(grid: &Grid, distance: impl Fn([f64; 3]) -> f64) -> Vec<Part> {
+    let labels = labels(grid.dimensions, distance);
+    let volume = Volume::new(&labels, grid.clone()).unwrap();
     let mut quiet = Quiet::default();
     let mut execution = Execution::new(2, &mut quiet).unwrap();
-    let (mut parts, _) = components::parts(runs, &mut execution).unwrap();
+    let mut parts = read_parts(&volume, &Options::default(), &mut execution, 1.0).unwrap();
     parts.retain(|part| part.component == 0);
     parts
 }
@@ -56,8 +58,8 @@ fn tiled(parts: &[Part], grid: &Grid, side: usize, threads: usize) -> Mesh {
     let mut execution = Execution::new(threads, &mut quiet).unwrap();
     let mut alone = Alone;
     let team = &mut Team::new(&mut alone);
-    let mesh = tiled_surface(parts, grid, (0.0, side), team, &mut execution).unwrap();
-    let mesh = mesh.expect("tiles that fit together");
+    let tiled = tiled_surface(parts, grid, (0.0, side), team, &mut execution).unwrap();
+    let mesh = tiled.expect("tiles that fit together").mesh;
     mesh.check_invariants().unwrap();
     mesh
 }
@@ -111,7 +113,7 @@ fn gyroid(p: [f64; 3]) -> f64 {
 #[test]
 fn a_sphere_in_tiles_is_closed() {
     let grid = Grid::new([112; 3]);
-    let parts = parts(grid.dimensions, sphere);
+    let parts = parts(&grid, sphere);
     let mesh = tiled(&parts, &grid, 64, 2);
     let found = figures(&mesh);
     assert_eq!((found.euler_number, found.boundary_loops), (2, 0));
@@ -128,7 +130,7 @@ fn a_sphere_in_tiles_is_closed() {
 #[test]
 fn a_sheet_in_tiles_ends_at_the_border_of_the_volume_only() {
     let grid = Grid::new([330, 200, 60]);
-    let parts = parts(grid.dimensions, wave);
+    let parts = parts(&grid, wave);
     let mesh = tiled(&parts, &grid, 128, 2);
     let found = figures(&mesh);
     assert_eq!((found.euler_number, found.boundary_loops), (1, 1));
@@ -148,7 +150,7 @@ fn a_sheet_in_tiles_ends_at_the_border_of_the_volume_only() {
 #[test]
 fn a_gyroid_in_tiles_has_the_handles_of_the_whole() {
     let grid = Grid::new([130, 130, 100]);
-    let parts = parts(grid.dimensions, gyroid);
+    let parts = parts(&grid, gyroid);
     let (mesh, whole) = (tiled(&parts, &grid, 64, 2), whole(&parts, &grid));
     let (own, of_whole) = (figures(&mesh), figures(&whole));
     assert_eq!(own.euler_number, of_whole.euler_number);
@@ -163,7 +165,7 @@ fn threads_and_long_voxels_make_no_difference() {
         spacing: [4.0, 4.0, 7.0],
         ..Grid::new([200, 150, 50])
     };
-    let parts = parts(grid.dimensions, wave);
+    let parts = parts(&grid, wave);
     let mesh = tiled(&parts, &grid, 96, 1);
     assert_eq!(figures(&mesh).boundary_loops, 1);
     assert_eq!(mesh, tiled(&parts, &grid, 96, 3));
@@ -183,7 +185,7 @@ fn a_mobius_band_in_tiles_is_cut_once() {
         across.abs() + (along.abs() - 12.0).max(0.0) * 10.0
     };
     let grid = Grid::new([140, 140, 50]);
-    let parts = parts(grid.dimensions, band);
+    let parts = parts(&grid, band);
     let found = figures(&tiled(&parts, &grid, 64, 2));
     // Cut once it is a disk.
     assert_eq!((found.euler_number, found.boundary_loops), (1, 1));
@@ -192,7 +194,7 @@ fn a_mobius_band_in_tiles_is_cut_once() {
 #[test]
 fn contours_of_tiles_are_those_of_the_whole_to_the_bit() {
     let grid = Grid::new([330, 200, 60]);
-    let parts = parts(grid.dimensions, wave);
+    let parts = parts(&grid, wave);
     let mut quiet = Quiet::default();
     let execution = &mut Execution::new(2, &mut quiet).unwrap();
     let mut alone = Alone;
@@ -219,4 +221,138 @@ fn contours_of_tiles_are_those_of_the_whole_to_the_bit() {
     found.sort_unstable();
     expected.sort_unstable();
     assert!(found == expected, "{} {}", found.len(), expected.len());
+}
+
+/// What each of several processes makes of a slab of a volume whose components are all worked on in tiles.
+fn in_processes(labels: &[u8], whole: &Grid, edge_length: f64, processes: usize) -> Vec<MeshPiece> {
+    let [nx, ny, nz] = whole.dimensions;
+    let work = |mut end: channels::Channels| {
+        let [from, to] = [end.process, end.process + 1].map(|p| nz * p / processes);
+        let grid = Grid {
+            dimensions: [nx, ny, to - from],
+            extent_start: [0, 0, from as i64],
+            ..whole.clone()
+        };
+        let volume = Volume::new(&labels[nx * ny * from..nx * ny * to], grid).unwrap();
+        let sizes = Sizes {
+            most_voxels: 1000,
+            side: 48,
+        };
+        let options = Options {
+            threads: 1,
+            edge_length,
+            ..Options::default()
+        };
+        let mut quiet = Quiet::default();
+        extract_piece_in(
+            Some(&volume),
+            whole,
+            (&options, sizes),
+            &mut end,
+            &mut quiet,
+        )
+        .unwrap()
+    };
+    std::thread::scope(|scope| {
+        let start = |end| scope.spawn(move || work(end));
+        let threads: Vec<_> = connect(processes).into_iter().map(start).collect();
+        threads.into_iter().map(|t| t.join().unwrap()).collect()
+    })
+}
+
+/// The meshes of all processes as one, by the numbers of their points.
+fn merged(pieces: &[MeshPiece]) -> Mesh {
+    let mut points = std::collections::BTreeMap::new();
+    let mut mesh = Mesh::default();
+    for piece in pieces {
+        assert_eq!(piece.first_triangle as usize, mesh.triangles.len());
+        let own = &piece.mesh;
+        for (p, id) in piece.point_ids.iter().enumerate() {
+            let point = (own.points[p], own.normals[p], own.thickness[p]);
+            assert_eq!(*points.entry(*id).or_insert(point), point, "point {id}");
+        }
+        let number = |p: u32| piece.point_ids[p as usize] as u32;
+        mesh.triangles
+            .extend(own.triangles.iter().map(|t| t.map(number)));
+        mesh.labels.extend(&own.labels);
+        mesh.components.extend(&own.components);
+    }
+    assert!(points.keys().copied().eq(0..points.len() as i64));
+    for (point, normal, thickness) in points.into_values() {
+        mesh.points.push(point);
+        mesh.normals.push(normal);
+        mesh.thickness.push(thickness);
+    }
+    mesh
+}
+
+/// The corners of a mesh's triangles with all there is to tell of them, in an order of their own.
+fn triangles(mesh: &Mesh) -> Vec<Vec<u32>> {
+    let corner = |p: u32| {
+        let (p, thickness) = (p as usize, mesh.thickness[p as usize]);
+        let floats = mesh.points[p].into_iter().chain(mesh.normals[p]);
+        floats.chain([thickness]).map(f32::to_bits)
+    };
+    let of = |t: usize| {
+        let corners = mesh.triangles[t].into_iter().flat_map(corner);
+        corners.chain([mesh.components[t]]).collect()
+    };
+    let mut all: Vec<Vec<u32>> = (0..mesh.triangles.len()).map(of).collect();
+    all.sort_unstable();
+    all
+}
+
+#[test]
+fn any_number_of_processes_gives_the_mesh_of_one() {
+    let whole = Grid {
+        spacing: [2.0, 2.0, 3.0],
+        ..Grid::new([104, 112, 40])
+    };
+    // A gyroid, and a sphere beside it.
+    let sphere = |p: [f64; 3]| {
+        let r = p
+            .iter()
+            .zip([18.0, 92.0, 20.0])
+            .map(|(v, c)| (v - c).powi(2));
+        (r.sum::<f64>().sqrt() - 14.0).abs()
+    };
+    let labels = labels(whole.dimensions, |[x, y, z]| match x < 40.0 && y > 68.0 {
+        true => sphere([x, y, z]),
+        false => gyroid([x, y, z]),
+    });
+    let alone = in_processes(&labels, &whole, 0.0, 1);
+    let expected = merged(&alone);
+    assert_eq!(expected, alone[0].mesh);
+    expected.check_invariants().unwrap();
+    assert!(expected.components.contains(&1));
+    for processes in [2, 3, 4, 7] {
+        let pieces = in_processes(&labels, &whole, 0.0, processes);
+        let busy = pieces
+            .iter()
+            .filter(|piece| !piece.mesh.triangles.is_empty());
+        assert!(busy.count() > 1);
+        let mesh = merged(&pieces);
+        mesh.check_invariants().unwrap();
+        assert_eq!(mesh.points.len(), expected.points.len());
+        assert!(triangles(&mesh) == triangles(&expected), "{processes}");
+    }
+}
+
+#[test]
+fn what_does_not_fit_into_tiles_one_process_works_on_whole() {
+    let whole = Grid::new([60, 60, 40]);
+    let labels = labels(whole.dimensions, |[x, y, z]| {
+        (((x - 30.0).powi(2) + (y - 30.0).powi(2) + (z - 20.0).powi(2)).sqrt() - 14.0).abs()
+    });
+    // Longer than a tile's margin would have room for.
+    let edge_length = 3.0;
+    let options = Options {
+        edge_length,
+        ..Options::default()
+    };
+    let volume = Volume::new(&labels, whole.clone()).unwrap();
+    let expected = extract(&volume, &options, &mut Quiet::default()).unwrap();
+    let pieces = in_processes(&labels, &whole, edge_length, 2);
+    assert!(pieces[1].mesh.triangles.is_empty());
+    assert_eq!(merged(&pieces), expected);
 }

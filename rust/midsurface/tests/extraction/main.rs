@@ -5,6 +5,7 @@ mod accuracy;
 mod bad_input;
 mod beyond_32_bits;
 mod chain;
+mod channels;
 mod determinism;
 mod edge_length;
 mod fields;
@@ -22,3 +23,5 @@ mod real_data;
 mod statistics;
 mod thickness;
 mod topology;
+
+use midsurface::Exchange;

@@ -1,66 +1,19 @@
 //! A volume that is spread over processes gives what it gives as a whole.
 
-use std::sync::mpsc::{channel, Receiver, Sender};
-
 use midsurface::{
     extract, extract_piece, mid_polylines, mid_polylines_piece, ridge_field, ridge_field_piece,
-    statistics, statistics_of_pieces, zip_polylines_piece, Error, Exchange, Grid, Mesh, MeshPiece,
-    Method, Observer, Options, Polylines, Result, Statistics, TriangleMesh, Volume,
+    statistics, statistics_of_pieces, zip_polylines_piece, Error, Grid, Mesh, MeshPiece, Method,
+    Observer, Options, Polylines, Result, Statistics, TriangleMesh, Volume,
 };
 use ndarray::{s, Array3};
 use phantoms::*;
 use proptest::prelude::*;
 
+use crate::channels::{connect, Channels};
 use crate::observer::Recorder;
 
 /// Voxels from .. to along x, y, z; nothing where from is not below to.
 type Extent = [[usize; 3]; 2];
-
-/// Threads in place of processes. A send does not wait for its receiver.
-struct Channels {
-    process: usize,
-    to: Vec<Sender<Vec<i64>>>,
-    from: Vec<Receiver<Vec<i64>>>,
-}
-
-impl Exchange for Channels {
-    fn processes(&self) -> usize {
-        self.to.len()
-    }
-    fn process(&self) -> usize {
-        self.process
-    }
-    fn send(&mut self, to: usize, numbers: &[i64]) -> bool {
-        assert_ne!(to, self.process);
-        self.to[to].send(numbers.to_vec()).is_ok()
-    }
-    fn receive(&mut self, from: usize, numbers: &mut [i64]) -> bool {
-        let Ok(received) = self.from[from].recv() else {
-            return false;
-        };
-        assert_eq!(received.len(), numbers.len());
-        numbers.copy_from_slice(&received);
-        true
-    }
-}
-
-fn connect(processes: usize) -> Vec<Channels> {
-    let mut ends: Vec<Channels> = (0..processes)
-        .map(|process| Channels {
-            process,
-            to: Vec::new(),
-            from: Vec::new(),
-        })
-        .collect();
-    for from in 0..processes {
-        for to in 0..processes {
-            let (sender, receiver) = channel();
-            ends[from].to.push(sender);
-            ends[to].from.push(receiver);
-        }
-    }
-    ends
-}
 
 /// The voxels of `extent`, and where they lie.
 fn cut(labels: &[u8], whole: &Grid, [from, to]: Extent) -> Option<(Vec<u8>, Grid)> {
@@ -187,7 +140,9 @@ fn compare(labels: &[u8], whole: &Grid, pieces: &[Extent], options: &Options) ->
         match outcome {
             Ok(piece) => {
                 let before = |count: fn(&Mesh) -> usize| meshes.iter().map(count).sum::<usize>();
-                assert_eq!(piece.first_point as usize, before(|m| m.points.len()));
+                let first = before(|m| m.points.len()) as i64;
+                let ids = first..first + piece.mesh.points.len() as i64;
+                assert_eq!(piece.point_ids, ids.collect::<Vec<_>>());
                 assert_eq!(piece.first_triangle as usize, before(|m| m.triangles.len()));
                 meshes.push(piece.mesh);
             }
@@ -381,7 +336,7 @@ fn processes_that_are_told_different_things_are_refused() {
 }
 
 /// The table of a mesh, or of a piece of one.
-fn measure(mesh: &Mesh, exchange: Option<&mut Channels>) -> Vec<Statistics> {
+fn measure(mesh: &Mesh, ids: Option<&[i64]>, exchange: Option<&mut Channels>) -> Vec<Statistics> {
     let points: Vec<_> = mesh.points.iter().map(|p| p.map(f64::from)).collect();
     let triangles: Vec<_> = mesh.triangles.iter().map(|t| t.map(i64::from)).collect();
     let components: Vec<_> = mesh.components.iter().copied().map(i64::from).collect();
@@ -391,6 +346,7 @@ fn measure(mesh: &Mesh, exchange: Option<&mut Channels>) -> Vec<Statistics> {
         thickness: Some(&mesh.thickness),
         labels: Some(&mesh.labels),
         components: Some(&components),
+        point_ids: ids,
     };
     let table = match exchange {
         None => statistics(&mesh),
@@ -408,17 +364,67 @@ fn the_table_of_all_pieces_is_that_of_the_whole() {
     let volume = Volume::new(&labels, whole.clone()).expect("a volume");
     let mesh = extract(&volume, &options, &mut Recorder::new(usize::MAX)).expect("a mesh");
     let pieces = compare(&labels, &whole, &blocks(dimensions, [3, 1, 1], 1), &options);
+    check_table(pieces.iter().map(|piece| (piece, None)), &mesh);
+}
+
+/// The triangles of a mesh that are wanted, with their points and the numbers of these.
+fn part(mesh: &Mesh, is_wanted: impl Fn(usize) -> bool) -> (Mesh, Vec<i64>) {
+    let (mut part, mut ids) = (Mesh::default(), Vec::new());
+    for t in (0..mesh.triangles.len()).filter(|&t| is_wanted(t)) {
+        part.triangles.push(mesh.triangles[t].map(|p| {
+            let known = ids.iter().rposition(|id| *id == i64::from(p));
+            known.unwrap_or_else(|| {
+                ids.push(i64::from(p));
+                ids.len() - 1
+            }) as u32
+        }));
+        part.labels.push(mesh.labels[t]);
+        part.components.push(mesh.components[t]);
+    }
+    let points = ids.iter().map(|&id| id as usize);
+    part.points = points.clone().map(|p| mesh.points[p]).collect();
+    part.thickness = points.map(|p| mesh.thickness[p]).collect();
+    (part, ids)
+}
+
+#[test]
+fn components_of_several_processes_are_measured_as_wholes() {
+    let dimensions = [40, 36, 32];
+    let labels = mitochondrion(dimensions, 0.0, 1);
+    let volume = Volume::new(&labels, Grid::new(dimensions)).expect("a volume");
+    let options = options(Method::RidgeSurface);
+    let mesh = extract(&volume, &options, &mut Recorder::new(usize::MAX)).expect("a mesh");
+    let place = |t: usize| mesh.points[mesh.triangles[t][0] as usize];
+    // In the middle a process that has nothing; the others' triangles are mixed.
+    let whose = |t: usize| match place(t)[0] as usize + place(t)[2] as usize {
+        sum if sum % 9 < 4 => 0,
+        sum if sum < 36 => 2,
+        _ => 3,
+    };
+    let parts: Vec<_> = (0..4)
+        .map(|process| part(&mesh, |t| whose(t) == process))
+        .collect();
+    assert!(parts[1].0.triangles.is_empty());
+    check_table(
+        parts.iter().map(|(part, ids)| (part, Some(&ids[..]))),
+        &mesh,
+    );
+}
+
+/// Compares the table of pieces, with the numbers of their points, with that of the whole.
+fn check_table<'a>(pieces: impl Iterator<Item = (&'a Mesh, Option<&'a [i64]>)>, mesh: &Mesh) {
+    let pieces: Vec<_> = pieces.collect();
     let tables: Vec<Vec<Statistics>> = std::thread::scope(|scope| {
-        let threads: Vec<_> = connect(3)
+        let threads: Vec<_> = connect(pieces.len())
             .into_iter()
-            .zip(&pieces)
-            .map(|(mut end, piece)| scope.spawn(move || measure(piece, Some(&mut end))))
+            .zip(pieces)
+            .map(|(mut end, (piece, ids))| scope.spawn(move || measure(piece, ids, Some(&mut end))))
             .collect();
         let tables = threads.into_iter().map(|thread| thread.join());
         tables.map(|table| table.expect("no panic")).collect()
     });
-    assert!(tables[1].is_empty() && tables[2].is_empty());
-    let expected = measure(&mesh, None);
+    assert!(tables[1..].iter().all(Vec::is_empty));
+    let expected = measure(mesh, None, None);
     assert_eq!(tables[0].len(), expected.len());
     for (row, expected) in tables[0].iter().zip(&expected) {
         let close =

@@ -54,6 +54,7 @@ fn table() -> Vec<Statistics> {
         thickness: Some(&thickness),
         labels: Some(&labels),
         components: Some(&components),
+        point_ids: None,
     };
     statistics(&mesh).expect("a good mesh")
 }
