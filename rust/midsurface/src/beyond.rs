@@ -11,6 +11,7 @@ use crate::halfedge::{ends, Fans, NONE};
 use crate::manifold::Surface;
 use crate::normals::normal_of_fan;
 use crate::region::Region;
+use crate::scraps::drop_pieces;
 use crate::trim::cut;
 
 /// A strip still reaches the border after so long a move along the normal, with as much more beyond
@@ -27,6 +28,8 @@ const ROUNDS: usize = 8;
 const NORMAL_ROUNDS: usize = 8;
 /// A point this near to the border was cut there, work units.
 const ON_BORDER: f64 = 1e-6;
+/// Smaller pieces are dropped where the border cut them, square work units.
+const LEAST: f64 = 3.0;
 
 /// Leads a consistently wound surface on beyond the border, from its edges that lie on that. The
 /// points from which new ones were led on are returned, in the order of the new ones.
@@ -111,8 +114,10 @@ fn way_out(normal: Vec3, outward: Vec3) -> Vec3 {
     way.map(|v| share * v)
 }
 
-/// Cuts off what lies beyond the border.
+/// Cuts off what lies beyond the border, and drops the pieces that are hardly more than a triangle
+/// then.
 pub(crate) fn cut_at_border(surface: &mut Surface, last: Vec3) -> Result<()> {
+    let mut is_cut = false;
     for (a, last) in last.into_iter().enumerate() {
         for (border, inward) in [(0.0, 1.0), (last, -1.0)] {
             let depth = |p: &Vec3| inward * (p[a] - border);
@@ -125,9 +130,13 @@ pub(crate) fn cut_at_border(surface: &mut Surface, last: Vec3) -> Result<()> {
             for p in surface.points.iter_mut().filter(|p| depth(p) < ON_BORDER) {
                 p[a] = border;
             }
+            is_cut = true;
         }
     }
-    Ok(())
+    match is_cut {
+        true => drop_pieces(surface, LEAST, |_| true),
+        false => Ok(()),
+    }
 }
 
 #[cfg(test)]

@@ -14,6 +14,16 @@ const SCRAP: f64 = 15.0;
 /// Drops the scraps of a surface, whose points have their parts as sources, from the parts that
 /// `has_scraps` names.
 pub(crate) fn drop_scraps(surface: &mut Surface, has_scraps: impl Fn(usize) -> bool) -> Result<()> {
+    drop_pieces(surface, SCRAP, has_scraps)
+}
+
+/// Drops pieces smaller than this, square work units, of a surface, whose points have their parts as
+/// sources, from the parts that `has_scraps` names.
+pub(crate) fn drop_pieces(
+    surface: &mut Surface,
+    scrap: f64,
+    has_scraps: impl Fn(usize) -> bool,
+) -> Result<()> {
     let mut pieces = DisjointSets::new(surface.points.len())?;
     for t in &surface.triangles {
         pieces.join(t[0] as usize, t[1] as usize);
@@ -34,7 +44,7 @@ pub(crate) fn drop_scraps(surface: &mut Surface, has_scraps: impl Fn(usize) -> b
     let mut triangles = std::mem::take(&mut surface.triangles);
     triangles.retain(|t| {
         let own = area[pieces.find(t[0] as usize)];
-        own >= SCRAP || own >= largest[part_of(t[0])] || !has_scraps(part_of(t[0]))
+        own >= scrap || own >= largest[part_of(t[0])] || !has_scraps(part_of(t[0]))
     });
     surface.triangles = triangles;
     Ok(())
