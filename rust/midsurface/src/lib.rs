@@ -16,7 +16,7 @@
 //! | --- | --- | --- |
 //! | scale | distance → how thick the label is here | `scale.rs` |
 //! | profile | mask → the mask smoothed as wide as it is thick | `profile.rs` |
-//! | sheets | profile → normal and offset of the sheet at every voxel near it | `crest.rs`, `lag.rs`, `bending.rs`, `extension.rs`, `settle.rs` |
+//! | sheets | profile → normal and offset of the sheet at every voxel near it | `crest.rs`, `lag.rs`, `one_face.rs`, `bending.rs`, `extension.rs`, `settle.rs` |
 //! | contour | sheets → a surface through them, cut at the label's rims | `contour.rs`, `rim.rs`, `trim.rs`, `scraps.rs` |
 //! | holes | surface → surface without creases where sheets meet, nor false holes, led on beyond the border of the volume for the while | `creases.rs`, `holes.rs`, `beyond.rs` |
 //! | midway | surface → surface midway between both faces, led on to where sheets meet | `midway.rs`, `look.rs`, `fairing.rs`, `reach.rs` |
@@ -88,6 +88,7 @@ mod midway;
 mod mosaic;
 mod normals;
 mod numbering;
+mod one_face;
 mod pieces;
 mod polylines;
 mod profile;

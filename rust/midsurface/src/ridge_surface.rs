@@ -1,8 +1,9 @@
 //! The method "ridge surface": the mid-surface in any orientation.
 //!
 //! Batch by batch: how thick the label is (`scale.rs`), its profile under a Gaussian as wide
-//! (`profile.rs`), the sheets at its crest (`crest.rs`, `lag.rs`), how they bend (`bending.rs`) and on to
-//! beyond the rims (`extension.rs`), a surface through them (`contour.rs`), wound the same way
+//! (`profile.rs`), the sheets at its crest (`crest.rs`, `lag.rs`) and where a border of the volume
+//! cuts that off (`one_face.rs`), how they bend (`bending.rs`) and on to beyond the rims
+//! (`extension.rs`), a surface through them (`contour.rs`), wound the same way
 //! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
 //! (`weld.rs`) and creases where sheets meet (`creases.rs`), closed where it has holes within the
 //! label (`holes.rs`), led on beyond the border of the volume (`beyond.rs`), moved midway between both
@@ -32,6 +33,7 @@ use crate::mask::{self, Mask};
 use crate::mesh::{drop_degenerate, turn_outward, Mesh};
 use crate::midway::{self, move_closer, move_midway, Label};
 use crate::normals::{normals, NORMAL_PASSES};
+use crate::one_face::{self, add_cut_sheets};
 use crate::profile::Profile;
 use crate::reach::{self, reach};
 use crate::remesh::remesh;
@@ -93,15 +95,10 @@ pub(crate) fn ridge_surface(
         "Measuring thickness",
         0.0,
         0.01,
-        distance::PASSES + scale::PASSES,
+        distance::PASSES + mask::PASSES + scale::PASSES,
     )?;
     let batch = &Batch::new(parts, grid.dimensions)?;
     let distance = distance::distance(batch, h, execution)?;
-    let sheets = find_sheets(batch, &distance, h, execution)?;
-    let (surface, fraction) = cut_surface(batch, sheets, &distance, grid, execution)?;
-    let passes =
-        mask::PASSES + creases::PASSES + holes::PASSES + 2 + midway::PASSES + reach::PASSES;
-    execution.stage("Moving midway", 0.49, 0.65, passes)?;
     let mask = Mask::new(batch, &distance, execution)?;
     let label = Label {
         batch,
@@ -109,6 +106,10 @@ pub(crate) fn ridge_surface(
         mask: &mask,
         h,
     };
+    let sheets = find_sheets(&label, execution)?;
+    let (surface, fraction) = cut_surface(batch, sheets, &distance, grid, execution)?;
+    let passes = creases::PASSES + holes::PASSES + 2 + midway::PASSES + reach::PASSES;
+    execution.stage("Moving midway", 0.49, 0.65, passes)?;
     let mut surface = moved_midway(&label, surface, &fraction, execution)?;
     turn_outward(&surface.points, &mut surface.triangles)?;
     execution.stage("Remeshing", 0.65, 0.94, 1)?;
@@ -229,19 +230,20 @@ fn in_mesh(grid: &Grid) -> impl Fn(Vec3) -> [f32; 3] + Sync + '_ {
 }
 
 /// The sheets of a batch, from the profile's crest to beyond the rims.
-pub(crate) fn find_sheets(
-    batch: &Batch,
-    distance: &[f32],
-    h: Vec3,
-    execution: &mut Execution,
-) -> Result<Vec<Sheet>> {
+pub(crate) fn find_sheets(label: &Label, execution: &mut Execution) -> Result<Vec<Sheet>> {
+    let Label {
+        batch, distance, h, ..
+    } = *label;
     let half_thickness = HalfThickness::new(batch, distance, execution)?;
     execution.stage("Smoothing labels", 0.01, 0.04, 1)?;
     let profile = Profile::new(batch, distance, half_thickness, h, execution)?;
-    execution.stage("Finding sheets", 0.04, 0.21, crest::PASSES)?;
-    let farthest = (FARTHEST * h.iter().copied().fold(1.0, f64::max)) as f32;
+    let passes = crest::PASSES + one_face::PASSES;
+    execution.stage("Finding sheets", 0.04, 0.21, passes)?;
+    let far = FARTHEST * h.iter().copied().fold(1.0, f64::max);
+    let farthest = far as f32;
     let mut sheets = core_sheets(batch, &profile, distance, farthest, h, execution)?;
     drop(profile);
+    add_cut_sheets(label, far, &mut sheets, execution)?;
     execution.stage(
         "Extending sheets",
         0.21,

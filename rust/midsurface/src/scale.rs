@@ -7,13 +7,15 @@
 //! the bricks' centres, so that the scale changes smoothly.
 
 use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
-use crate::error::Result;
+use crate::error::{collected, Result};
 use crate::execution::Execution;
 
 /// D is measured to the first voxel outside, about this much beyond the face, work units.
 const BEYOND_FACE: f32 = 0.4;
 /// The smallest half thickness: that of a single voxel.
 const LEAST: f32 = 0.5;
+/// What a brick takes of the sums of each one around that has some.
+const TAKEN: f32 = 0.01;
 
 /// Passes over all bricks that [`BrickMeans::new`] makes, for its progress.
 pub(crate) const PASSES: usize = 1;
@@ -40,6 +42,22 @@ impl BrickMeans {
     /// The sums of all bricks.
     pub fn sums(&self) -> &[[f32; 2]] {
         &self.0
+    }
+
+    /// Lets bricks without a sum take those of the bricks around, so many times; what is taken counts
+    /// little against what is known.
+    pub fn spread(mut self, batch: &Batch, times: usize) -> Result<Self> {
+        for _ in 0..times {
+            let mut next = collected(self.0.iter().copied())?;
+            for (brick, own) in next.iter_mut().enumerate().filter(|(_, own)| own[1] == 0.0) {
+                let (directory, place) = batch.brick(brick);
+                for [value, weight] in directory.around(place).map(|b| self.0[b]) {
+                    *own = [own[0] + TAKEN * value, own[1] + TAKEN * weight];
+                }
+            }
+            self.0 = next;
+        }
+        Ok(self)
     }
 
     /// The sums of the bricks around a brick, 0 where there is none.

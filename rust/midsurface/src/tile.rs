@@ -17,7 +17,7 @@ use crate::grid::{Grid, Vec3};
 use crate::halfedge::Fans;
 use crate::holes::close_holes;
 use crate::manifold::{make_manifold_as_wound, Surface};
-use crate::mask::Mask;
+use crate::mask::{self, Mask};
 use crate::mesh::Mesh;
 use crate::midway::{move_midway, Label};
 use crate::mosaic::{centre, kept};
@@ -104,9 +104,18 @@ impl<'a> Stages<'a> {
     ) -> Result<(Surface, Vec<BrickSums>)> {
         let near = self.near(&near.grown(CONTOUR_REACH))?;
         let batch = &Batch::new(&near.parts, self.grid.dimensions)?;
-        execution.stage("Measuring thickness", 0.0, 0.01, distance::PASSES + 1)?;
+        let passes = distance::PASSES + mask::PASSES + 1;
+        execution.stage("Measuring thickness", 0.0, 0.01, passes)?;
         let distance = distance::distance(batch, self.h, execution)?;
-        let sheets = find_sheets(batch, &distance, self.h, execution)?;
+        let mask = Mask::new(batch, &distance, execution)?;
+        let label = Label {
+            batch,
+            distance: &distance,
+            mask: &mask,
+            h: self.h,
+        };
+        let sheets = find_sheets(&label, execution)?;
+        drop(mask);
         execution.stage("Joining sheets", 0.37, until, contour::PASSES)?;
         let mut surface = contour::contour(batch, &sheets, self.h, execution)?;
         let smoothed = smoothed_mask(batch, &distance, self.h, execution)?;

@@ -8,7 +8,9 @@ use crate::distributed::{extract_piece_in, MeshPiece};
 use crate::exchange::{Alone, Exchange};
 use crate::execution::Quiet;
 use crate::lots::Sizes;
+use crate::mask::Mask;
 use crate::mesh::Mesh;
+use crate::midway::Label;
 use crate::reading::read_parts;
 use crate::ridge_surface::{find_sheets, ridge_surface};
 use crate::statistics::{statistics, Statistics, TriangleMesh};
@@ -214,7 +216,13 @@ fn contours_of_tiles_are_those_of_the_whole_to_the_bit() {
     }
     let batch = &Batch::new(&parts, grid.dimensions).unwrap();
     let distance = distance::distance(batch, stages.h, execution).unwrap();
-    let sheets = find_sheets(batch, &distance, stages.h, execution).unwrap();
+    let label = Label {
+        batch,
+        distance: &distance,
+        mask: &Mask::new(batch, &distance, execution).unwrap(),
+        h: stages.h,
+    };
+    let sheets = find_sheets(&label, execution).unwrap();
     let surface = contour(batch, &sheets, stages.h, execution).unwrap();
     let triangles = surface.triangles.iter();
     let mut expected: Vec<_> = triangles.map(|t| corners(&surface, t)).collect();

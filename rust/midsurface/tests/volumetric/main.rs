@@ -1,6 +1,7 @@
 //! The ridge surface from outside: on phantoms whose mid-surface is known, clean and noisy, on real
 //! volumes, and where there is none. One program, so that it is linked once.
 
+mod borders;
 #[path = "../extraction/image_file.rs"]
 mod image_file;
 mod junctions;

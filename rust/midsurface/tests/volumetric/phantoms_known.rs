@@ -33,6 +33,12 @@ pub(crate) fn judged(name: &str, seed: u64, noisy: bool) -> (Trial, Phantom, Rep
     let trial = trials.find(|trial| trial.name == name);
     let trial = trial.expect("a line of the table");
     let phantom = trial.phantom(seed, noisy);
+    let report = judged_phantom(&phantom);
+    (trial, phantom, report)
+}
+
+/// What is to be said of the mesh of a phantom.
+pub(crate) fn judged_phantom(phantom: &Phantom) -> Report {
     let frame = &phantom.frame;
     let grid = Grid {
         dimensions: frame.dimensions,
@@ -42,8 +48,7 @@ pub(crate) fn judged(name: &str, seed: u64, noisy: bool) -> (Trial, Phantom, Rep
         direction: frame.direction,
     };
     let mesh = ridge_surface(&phantom.labels, grid);
-    let report = judge(&mesh.points, &mesh.triangles, &phantom);
-    (trial, phantom, report)
+    judge(&mesh.points, &mesh.triangles, phantom)
 }
 
 macro_rules! must {
