@@ -2,8 +2,8 @@
 //!
 //! Where a sheet passes close by a voxel, cubes around it have corners that all but coincide, with
 //! slivers between them whose normals say nothing. Whatever comes later relies on normals, so their
-//! short edges are drawn together, the shortest first. The link condition (Dey et al. 1999) keeps
-//! the topology, and no triangle may turn over; an edge for which either fails stays.
+//! short edges are drawn together. The link condition (Dey et al. 1999) keeps the topology, and no
+//! triangle may turn over; an edge for which either fails stays.
 
 use rayon::prelude::*;
 
