@@ -132,11 +132,11 @@ pub unsafe extern "C" fn midsurface_extract(
 }
 
 /// Extracts the mid-surface of a label volume of which each of several processes holds a piece. Each
-/// process gets the mesh of whole components, numbered as in the whole volume, or an empty one. Of a
-/// component of more than four million voxels each gets a part: only then the meshes share points, and
-/// never triangles. All together are midsurface_extract's mesh. All processes have to call this at once,
-/// with the same options; where one fails, all do. Warnings about the whole volume come in the first
-/// process.
+/// process gets the mesh of whole components, numbered as in the whole volume, or an empty one. Of the
+/// ridge surface of a component of more than four million voxels each gets a part: only then the meshes
+/// share points, and never triangles. All together are midsurface_extract's mesh. All processes have to
+/// call this at once, with the same options; where one fails, all do. Warnings about the whole volume
+/// come in the first process.
 ///
 /// piece: what this process holds, as described there.
 /// exchange: how it reaches the others.

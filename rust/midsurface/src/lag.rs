@@ -1,4 +1,4 @@
-//! Core sheets → core sheets whose normals do not lag behind near rims.
+//! Core sheets → core sheets whose normals lag less near rims.
 //!
 //! Normals are smoothed over what there is of a sheet, which near a rim lies to one side. Their mean
 //! is the normal at the centre of the weights there, δ = ρ² ∇ ln W away, with ρ² the variance of the

@@ -40,9 +40,9 @@
 //! batches, and depends on places in the volume only, never on the order of work: any number of
 //! threads gives the same mesh. A component that is larger than a batch should be is cut into tiles
 //! (`lots.rs`, `tiles.rs`, `tiled_surface.rs`) for the ridge surface. Processes that hold a piece of the
-//! volume each give the same mesh, too, however many they are: they swap runs (`exchange.rs`) until each has whole components
-//! (`territory.rs`, `pieces.rs`), and what follows is the same; tiles are dealt to all processes, which
-//! swap what lies between them.
+//! volume each give the same mesh, too, however many they are: they swap runs (`exchange.rs`) until each
+//! has whole components (`territory.rs`, `pieces.rs`), and what follows is the same; tiles are dealt to
+//! all processes, which swap what lies between them.
 #![forbid(unsafe_code)]
 
 mod batches;
@@ -73,6 +73,7 @@ mod findings;
 mod flips;
 mod grid;
 mod halfedge;
+mod hash;
 mod holes;
 #[cfg(feature = "inject-panics")]
 pub mod injected_panics;
@@ -153,6 +154,7 @@ use reading::{read_parts, READING};
 pub use statistics::{
     statistics, statistics_of_pieces, Scope, Statistics, ThicknessFigures, TriangleMesh,
 };
+use tiled_mesh::TileMesh;
 use tiled_surface::tiled_surface;
 pub use volume::{Label, Scalars, Volume};
 
@@ -311,6 +313,20 @@ struct Found {
     findings: Findings,
 }
 
+impl Found {
+    /// Adds the own tiles of a component; the first process tells where nobody has any of it.
+    fn add_tiled(&mut self, lot: &[Part], tiled: TileMesh, team: &mut Team) -> Result<()> {
+        let of_all = team.share(&[tiled.mesh.triangles.len() as i64])?;
+        if team.process() == 0 && of_all.iter().flatten().all(|count| *count == 0) {
+            self.findings.add_without(lot, &tiled.mesh);
+        }
+        let first = self.mesh.points.len() as u32;
+        let shared = tiled.shared.into_iter();
+        error::extend(&mut self.shared, shared.map(|(key, p)| (key, first + p)))?;
+        self.mesh.append(tiled.mesh)
+    }
+}
+
 /// Those that are worked on in tiles all processes have to have.
 fn find_surface(
     parts: &[Part],
@@ -434,10 +450,7 @@ fn find_ridge_surface(
             execution.within(span[0], span[1]);
             let size = (edge_length, sizes.side);
             if let Some(tiled) = tiled_surface(lot, grid, size, team, execution)? {
-                let first = found.mesh.points.len() as u32;
-                let shared = tiled.shared.into_iter();
-                error::extend(&mut found.shared, shared.map(|(key, p)| (key, first + p)))?;
-                found.mesh.append(tiled.mesh)?;
+                found.add_tiled(lot, tiled, team)?;
                 continue;
             }
             // All processes have the component; one works on it as a whole.

@@ -17,6 +17,7 @@ use crate::exchange::Team;
 use crate::execution::Execution;
 use crate::grid::{along, cross, dot, length, sub, Vec3};
 use crate::halfedge::{ends, twins, NONE};
+use crate::hash::mixed;
 use crate::manifold::Surface;
 
 /// Numbers that sums, half an edge on a seam and a moved point are sent as.
@@ -201,16 +202,6 @@ impl Seam {
             is_forward: in_order ^ turned,
         }
     }
-}
-
-/// One number made of several (the finalizer of MurmurHash3).
-fn mixed(words: impl Iterator<Item = u64>) -> u64 {
-    words.fold(0, |hash: u64, word| {
-        let mut h = (hash.rotate_left(5) ^ word).wrapping_mul(0xff51_afd7_ed55_8ccd);
-        h ^= h >> 33;
-        h = h.wrapping_mul(0xc4ce_b9fe_1a85_ec53);
-        h ^ h >> 33
-    })
 }
 
 /// Disjoint sets of things each of which is, or is not, the other way round than the one that stands

@@ -84,20 +84,20 @@ fn figures(mesh: &Mesh) -> Statistics {
     statistics(&mesh).unwrap().remove(0)
 }
 
-/// Root of the mean square of the points' distances from where they should be, but for the farthest
-/// hundredth, which a few points at rims decide.
-fn off(mesh: &Mesh, distance: impl Fn([f64; 3]) -> f64) -> f64 {
-    let points = mesh.points.iter();
-    let mut squares: Vec<f64> = points.map(|p| distance(p.map(f64::from)).powi(2)).collect();
-    squares.sort_unstable_by(f64::total_cmp);
-    squares.truncate(squares.len() - squares.len() / 100);
-    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
-}
-
-/// The farthest of the points' distances from where they should be.
-fn farthest(mesh: &Mesh, distance: impl Fn([f64; 3]) -> f64) -> f64 {
-    let points = mesh.points.iter();
-    points.fold(0.0, |most, p| distance(p.map(f64::from)).max(most))
+/// Asserts that a mesh is as near to where it should be as the whole's: in the mean square, but for the
+/// farthest hundredth, which a few points at rims decide, and at its farthest point.
+fn is_as_near(mesh: &Mesh, whole: &Mesh, distance: impl Fn([f64; 3]) -> f64) {
+    let figures = |mesh: &Mesh| {
+        let points = mesh.points.iter();
+        let mut off: Vec<f64> = points.map(|p| distance(p.map(f64::from))).collect();
+        off.sort_unstable_by(f64::total_cmp);
+        let most = &off[..off.len() - off.len() / 100];
+        let square = most.iter().map(|v| v * v).sum::<f64>() / most.len() as f64;
+        [square.sqrt(), off[off.len() - 1]]
+    };
+    for (own, of_whole) in figures(mesh).into_iter().zip(figures(whole)) {
+        assert!(own < 1.02 * of_whole, "{own} not {of_whole}");
+    }
 }
 
 fn sphere(p: [f64; 3]) -> f64 {
@@ -127,8 +127,7 @@ fn a_sphere_in_tiles_is_closed() {
     let found = figures(&mesh);
     assert_eq!((found.euler_number, found.boundary_loops), (2, 0));
     let whole = whole(&parts, &grid);
-    let (own, of_whole) = (off(&mesh, sphere), off(&whole, sphere));
-    assert!(own < 1.02 * of_whole, "{own} not {of_whole}");
+    is_as_near(&mesh, &whole, sphere);
     // Its normals point outward, as those of the whole do.
     for (p, n) in mesh.points.iter().zip(&mesh.normals) {
         let out: f32 = (0..3).map(|a| (p[a] - 55.3) * n[a]).sum();
@@ -144,8 +143,7 @@ fn a_sheet_in_tiles_ends_at_the_border_of_the_volume_only() {
     let found = figures(&mesh);
     assert_eq!((found.euler_number, found.boundary_loops), (1, 1));
     let whole = whole(&parts, &grid);
-    let (own, of_whole) = (off(&mesh, wave), off(&whole, wave));
-    assert!(own < 1.02 * of_whole, "{own} not {of_whole}");
+    is_as_near(&mesh, &whole, wave);
     let area = |mesh: &Mesh| figures(mesh).quality.area;
     let (own, of_whole) = (area(&mesh), area(&whole));
     assert!((own / of_whole - 1.0).abs() < 1e-3, "{own} not {of_whole}");
@@ -164,10 +162,7 @@ fn a_gyroid_in_tiles_has_the_handles_of_the_whole() {
     let (own, of_whole) = (figures(&mesh), figures(&whole));
     assert_eq!(own.euler_number, of_whole.euler_number);
     assert_eq!(own.boundary_loops, of_whole.boundary_loops);
-    let (own, of_whole) = (off(&mesh, gyroid), off(&whole, gyroid));
-    assert!(own < 1.02 * of_whole, "{own} not {of_whole}");
-    let (own, of_whole) = (farthest(&mesh, gyroid), farthest(&whole, gyroid));
-    assert!(own < 1.02 * of_whole, "{own} not {of_whole}");
+    is_as_near(&mesh, &whole, gyroid);
 }
 
 #[test]
@@ -242,6 +237,17 @@ fn contours_of_tiles_are_those_of_the_whole_to_the_bit() {
 
 /// What each of several processes makes of a slab of a volume whose components are all worked on in tiles.
 fn in_processes(labels: &[u8], whole: &Grid, edge_length: f64, processes: usize) -> Vec<MeshPiece> {
+    let all = told_in_processes(labels, whole, edge_length, processes);
+    all.into_iter().map(|(piece, _)| piece).collect()
+}
+
+/// The same, each with its warnings.
+fn told_in_processes(
+    labels: &[u8],
+    whole: &Grid,
+    edge_length: f64,
+    processes: usize,
+) -> Vec<(MeshPiece, Vec<String>)> {
     let [nx, ny, nz] = whole.dimensions;
     let work = |mut end: channels::Channels| {
         let [from, to] = [end.process, end.process + 1].map(|p| nz * p / processes);
@@ -261,14 +267,9 @@ fn in_processes(labels: &[u8], whole: &Grid, edge_length: f64, processes: usize)
             ..Options::default()
         };
         let mut quiet = Quiet::default();
-        extract_piece_in(
-            Some(&volume),
-            whole,
-            (&options, sizes),
-            &mut end,
-            &mut quiet,
-        )
-        .unwrap()
+        let size = (&options, sizes);
+        let piece = extract_piece_in(Some(&volume), whole, size, &mut end, &mut quiet);
+        (piece.unwrap(), quiet.warnings)
     };
     std::thread::scope(|scope| {
         let start = |end| scope.spawn(move || work(end));
@@ -372,4 +373,22 @@ fn what_does_not_fit_into_tiles_one_process_works_on_whole() {
     let pieces = in_processes(&labels, &whole, edge_length, 2);
     assert!(pieces[1].mesh.triangles.is_empty());
     assert_eq!(merged(&pieces), expected);
+}
+
+#[test]
+fn a_component_without_a_surface_is_told_of_once() {
+    let whole = Grid::new([40; 3]);
+    // A ball.
+    let labels = labels(whole.dimensions, |p| {
+        p.iter().map(|v| (v - 20.0).powi(2)).sum::<f64>().sqrt() - 6.0
+    });
+    for processes in [1, 2] {
+        let found = told_in_processes(&labels, &whole, 0.0, processes);
+        assert!(found.iter().all(|(p, _)| p.mesh.triangles.is_empty()));
+        let warnings: Vec<String> = found.into_iter().flat_map(|(_, w)| w).collect();
+        assert!(
+            warnings.len() == 1 && warnings[0].contains("1 of its separate pieces"),
+            "{warnings:?}"
+        );
+    }
 }

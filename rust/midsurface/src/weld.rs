@@ -11,6 +11,7 @@ use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, cross, dot, length, squared_distance, sub, Vec3};
 use crate::halfedge::{ends, next, triangles_at, Fans, NONE};
+use crate::hash::mixed;
 use crate::manifold::Surface;
 
 /// Edges shorter than this are drawn together, work units.
@@ -64,17 +65,11 @@ fn short_edges(surface: &Surface, execution: &Execution) -> Result<Vec<u32>> {
     Ok(short)
 }
 
-/// A number made of the places of an edge's ends, by multiplicative hashing (Knuth).
+/// A number made of the places of an edge's ends, whichever comes first.
 fn hash(surface: &Surface, e: u32) -> u64 {
     let (a, b) = ends(&surface.triangles, e);
-    let of = |p: u32| {
-        let bits = surface.points[p as usize].map(f64::to_bits);
-        bits.iter().fold(0u64, |hash, bits| {
-            let hash = (hash ^ bits).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            hash ^ hash >> 32
-        })
-    };
-    (of(a) ^ of(b)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    let of = |p: u32| mixed(surface.points[p as usize].into_iter().map(f64::to_bits));
+    of(a) ^ of(b)
 }
 
 /// The fans of the ends of short edges, which are few, and of the points next to them; other points
@@ -202,8 +197,7 @@ mod tests {
 
     fn weld_all(surface: &mut Surface) {
         let mut quiet = Quiet::default();
-        let mut execution = Execution::new(2, &mut quiet).unwrap();
-        weld(surface, &mut execution).unwrap();
+        weld(surface, &mut Execution::new(2, &mut quiet).unwrap()).unwrap();
     }
 
     #[test]
