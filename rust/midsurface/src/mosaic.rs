@@ -8,8 +8,11 @@
 
 use std::cmp::Ordering;
 
+use rayon::prelude::*;
+
 use crate::error::{collected, extend, filled, push, zeros, Error, Result};
 use crate::exchange::Team;
+use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::halfedge::NONE;
 use crate::manifold::Surface;
@@ -78,12 +81,13 @@ pub(crate) fn received(
     pieces: &[Piece],
     boxes: &[Vec<Corners>],
     team: &mut Team,
+    execution: &Execution,
 ) -> Result<Vec<Piece>> {
     let mut messages = vec![Vec::new(); team.processes()];
     for (process, boxes) in boxes.iter().enumerate() {
         for piece in pieces.iter().filter(|_| process != team.process()) {
             let is_wanted = |p: Vec3| boxes.iter().any(|corners| is_within(*corners, p));
-            let surface = chosen(&piece.surface, is_wanted)?;
+            let surface = chosen(&piece.surface, is_wanted, execution)?;
             if !surface.triangles.is_empty() {
                 let made_in = piece.made_in;
                 Piece { made_in, surface }.pack(&mut messages[process])?;
@@ -106,17 +110,16 @@ pub(crate) fn received(
 pub(crate) fn gathered<'a>(
     pieces: impl IntoIterator<Item = &'a Piece>,
     corners: Corners,
+    execution: &Execution,
 ) -> Result<Surface> {
     let mut order = collected(pieces)?;
     order.sort_unstable_by_key(|piece| piece.made_in);
     let mut found = Vec::new();
     for piece in order {
-        push(
-            &mut found,
-            chosen(&piece.surface, |p| is_within(corners, p))?,
-        )?;
+        let is_wanted = |p: Vec3| is_within(corners, p);
+        push(&mut found, chosen(&piece.surface, is_wanted, execution)?)?;
     }
-    joined(found)
+    joined(found, execution)
 }
 
 /// The centre of a triangle, to the bit the same whichever corner comes first.
@@ -129,13 +132,27 @@ pub(crate) fn centre(surface: &Surface, t: usize) -> Vec3 {
     })
 }
 
+/// Of each triangle of a surface whether its centre is wanted.
+pub(crate) fn wanted(
+    surface: &Surface,
+    is_wanted: impl Fn(Vec3) -> bool + Sync,
+    execution: &Execution,
+) -> Result<Vec<bool>> {
+    let mut wanted: Vec<bool> = zeros(surface.triangles.len())?;
+    execution.in_pool(|| {
+        let all = wanted.par_iter_mut().enumerate();
+        all.for_each(|(t, own)| *own = is_wanted(centre(surface, t)));
+    });
+    Ok(wanted)
+}
+
 /// The triangles of a surface whose centres are wanted.
-pub(crate) fn chosen(surface: &Surface, is_wanted: impl Fn(Vec3) -> bool) -> Result<Surface> {
-    let all = 0..surface.triangles.len();
-    kept(
-        surface,
-        &collected(all.map(|t| is_wanted(centre(surface, t))))?,
-    )
+pub(crate) fn chosen(
+    surface: &Surface,
+    is_wanted: impl Fn(Vec3) -> bool + Sync,
+    execution: &Execution,
+) -> Result<Surface> {
+    kept(surface, &wanted(surface, is_wanted, execution)?)
 }
 
 /// The triangles of a surface that stay, in their order, with their points.
@@ -157,7 +174,7 @@ pub(crate) fn kept(surface: &Surface, stays: &[bool]) -> Result<Surface> {
 
 /// Several surfaces as one, in which points that are the same to the bit are one. Points are numbered by
 /// part and place, and triangles come in the order of the surfaces.
-fn joined(surfaces: impl IntoIterator<Item = Surface>) -> Result<Surface> {
+fn joined(surfaces: impl IntoIterator<Item = Surface>, execution: &Execution) -> Result<Surface> {
     let mut all = Surface::default();
     for surface in surfaces {
         let first = all.points.len() as u32;
@@ -166,30 +183,47 @@ fn joined(surfaces: impl IntoIterator<Item = Surface>) -> Result<Surface> {
         let triangles = surface.triangles.iter().map(|t| t.map(|p| first + p));
         extend(&mut all.triangles, triangles)?;
     }
+    let key = |p: u32| order_of(all.source[p as usize], all.points[p as usize]);
     let mut order = collected(0..all.points.len() as u32)?;
-    order.sort_unstable_by(|&a, &b| in_order(&all, a, b));
+    execution.in_pool(|| order.par_sort_unstable_by(|&a, &b| key(a).cmp(&key(b))));
     let mut number: Vec<u32> = zeros(order.len())?;
     let (mut points, mut source) = (Vec::new(), Vec::new());
-    for same in order.chunk_by(|&a, &b| in_order(&all, a, b) == Ordering::Equal) {
+    for same in order.chunk_by(|&a, &b| key(a) == key(b)) {
         same.iter()
             .for_each(|&p| number[p as usize] = points.len() as u32);
         push(&mut points, all.points[same[0] as usize])?;
         push(&mut source, all.source[same[0] as usize])?;
     }
-    for p in all.triangles.iter_mut().flatten() {
-        *p = number[*p as usize];
-    }
+    let corners = all.triangles.as_flattened_mut();
+    execution.in_pool(|| {
+        corners
+            .par_iter_mut()
+            .for_each(|p| *p = number[*p as usize])
+    });
     (all.points, all.source) = (points, source);
     Ok(all)
 }
 
-/// Orders points by part and place, to the bit.
-fn in_order(surface: &Surface, a: u32, b: u32) -> Ordering {
-    let key = |p: u32| {
-        let [x, y, z] = surface.points[p as usize].map(f64::to_bits);
-        (surface.source[p as usize], z, y, x)
-    };
-    key(a).cmp(&key(b))
+/// The number of a point, told by its part and place, in a surface that was gathered.
+pub(crate) fn number(gathered: &Surface, part: u32, place: Vec3) -> Option<usize> {
+    let wanted = order_of(part, place);
+    let (mut from, mut to) = (0, gathered.points.len());
+    while from < to {
+        let middle = from.midpoint(to);
+        let key = order_of(gathered.source[middle], gathered.points[middle]);
+        match key.cmp(&wanted) {
+            Ordering::Less => from = middle + 1,
+            Ordering::Equal => return Some(middle),
+            Ordering::Greater => to = middle,
+        }
+    }
+    None
+}
+
+/// What orders points by part and place, to the bit.
+fn order_of(part: u32, place: Vec3) -> (u32, u64, u64, u64) {
+    let [x, y, z] = place.map(f64::to_bits);
+    (part, z, y, x)
 }
 
 fn is_within([low, high]: Corners, p: Vec3) -> bool {
@@ -199,6 +233,7 @@ fn is_within([low, high]: Corners, p: Vec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::execution::Quiet;
 
     fn square(at: f64) -> Surface {
         let corner = |x: f64, y: f64| [at + x, y, 0.1];
@@ -216,21 +251,31 @@ mod tests {
 
     #[test]
     fn what_is_joined_has_each_point_once() {
-        let both = joined([square(0.0), square(1.0)]).unwrap();
+        let mut quiet = Quiet::default();
+        let execution = &Execution::new(2, &mut quiet).unwrap();
+        let both = joined([square(0.0), square(1.0)], execution).unwrap();
         assert_eq!(both.points.len(), 6);
         assert_eq!(both.triangles.len(), 4);
-        let left = chosen(&both, |p| p[0] < 1.0).unwrap();
-        let right = chosen(&both, |p| p[0] >= 1.0).unwrap();
-        let again = joined([left, right]).unwrap();
+        let left = chosen(&both, |p| p[0] < 1.0, execution).unwrap();
+        let right = chosen(&both, |p| p[0] >= 1.0, execution).unwrap();
+        let again = joined([left, right], execution).unwrap();
         assert_eq!(again.points, both.points);
         assert_eq!(again.triangles, both.triangles);
+        for (p, place) in both.points.iter().enumerate() {
+            assert_eq!(number(&both, 0, *place), Some(p));
+            assert_eq!(number(&both, 1, *place), None);
+        }
+        assert_eq!(number(&both, 0, [0.5; 3]), None);
     }
 
     #[test]
     fn points_of_different_parts_are_different() {
         let mut other = square(1.0);
         other.source = vec![1; 4];
-        assert_eq!(joined([square(0.0), other]).unwrap().points.len(), 8);
+        let mut quiet = Quiet::default();
+        let execution = &Execution::new(2, &mut quiet).unwrap();
+        let both = joined([square(0.0), other], execution).unwrap();
+        assert_eq!(both.points.len(), 8);
     }
 
     #[test]

@@ -239,11 +239,6 @@ impl ParitySets {
 pub(crate) struct Moves(Vec<(Point, Vec3)>);
 
 impl Moves {
-    pub fn new(mut moves: Vec<(Point, Vec3)>) -> Self {
-        moves.sort_unstable_by(|a, b| a.0.order(&b.0));
-        Self(moves)
-    }
-
     /// Where a point goes, if it does.
     pub fn of(&self, point: Point) -> Option<Vec3> {
         let found = self.0.binary_search_by(|(from, _)| from.order(&point));

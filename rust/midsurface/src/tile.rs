@@ -20,7 +20,7 @@ use crate::manifold::{make_manifold_as_wound, Surface};
 use crate::mask::{self, Mask};
 use crate::mesh::Mesh;
 use crate::midway::{move_midway, Label};
-use crate::mosaic::{centre, kept};
+use crate::mosaic::{kept, wanted};
 use crate::remesh::{remesh_some, Before};
 use crate::ridge_surface::{
     find_sheets, finish, in_world, keep_within, led_on, trimmed, values, wanted_edge,
@@ -229,7 +229,7 @@ impl<'a> Stages<'a> {
     pub fn remeshed(
         &self,
         around: &Surface,
-        is_own: impl Fn(Vec3) -> bool,
+        is_own: impl Fn(Vec3) -> bool + Sync,
         before: Before,
         execution: &mut Execution,
     ) -> Result<Surface> {
@@ -238,7 +238,7 @@ impl<'a> Stages<'a> {
             triangles,
             source,
         } = around;
-        let own = collected((0..triangles.len()).map(|t| is_own(centre(around, t))))?;
+        let own = wanted(around, is_own, execution)?;
         let how = (self.wanted, before);
         let remeshed = remesh_some((points, triangles), |t| own[t], how, execution)?;
         let part_of = |origin: u32| source[triangles[origin as usize][0] as usize];
@@ -257,7 +257,7 @@ impl<'a> Stages<'a> {
         &self,
         mut surface: Surface,
         near: &VoxelBox,
-        is_own: impl Fn(Vec3) -> bool,
+        is_own: impl Fn(Vec3) -> bool + Sync,
         execution: &mut Execution,
     ) -> Result<(Surface, Mesh, Vec<bool>)> {
         let near = self.near(near)?;
@@ -275,17 +275,14 @@ impl<'a> Stages<'a> {
         };
         let surface = surface.compact()?;
         let (found, _) = finish(&label, surface, self.grid, self.wanted, execution)?;
-        let own = |found: &Surface| {
-            let all = 0..found.triangles.len();
-            collected(all.map(|t| is_own(centre(found, t))))
-        };
         // Normals of own points are those of all triangles around them.
-        let is_own = own(&found)?;
-        let is_used = used_by(&found, |t| is_own[t])?;
+        let own = wanted(&found, is_own, execution)?;
+        let is_used = used_by(&found, |t| own[t])?;
         let triangles = found.triangles.iter();
         let beside = collected(triangles.map(|t| t.iter().any(|&p| is_used[p as usize])))?;
         let found = kept(&found, &beside)?;
-        let is_own = own(&found)?;
+        let stays = own.into_iter().zip(beside).filter(|(_, stays)| *stays);
+        let is_own = collected(stays.map(|(own, _)| own))?;
         let mut of_component = found.copied()?;
         near.to_component(&mut of_component);
         let fans = Fans::new(&found.triangles, found.points.len())?;

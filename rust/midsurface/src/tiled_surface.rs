@@ -19,15 +19,17 @@
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
+use rayon::prelude::*;
+
 use crate::components::Part;
-use crate::error::{collected, extend, filled, push, Error, Result};
+use crate::error::{collected, extend, filled, push, zeros, Error, Result};
 use crate::exchange::Team;
 use crate::execution::Execution;
 use crate::grid::{Grid, Vec3};
 use crate::manifold::Surface;
-use crate::mosaic::{centre, chosen, gathered, kept, received, Corners, Piece};
+use crate::mosaic::{centre, gathered, kept, number, received, wanted, Corners, Piece};
 use crate::remesh::Before;
-use crate::seams::{agree, moved_alike, Moves, Patches, Point};
+use crate::seams::{agree, moved_alike, Patches, Point};
 use crate::tile::{BrickSums, Stages, FINISH_BEGINS};
 use crate::tiled_mesh::{assembled, TileMesh};
 use crate::tiles::{tiles, Place, Tile, Tiling, VoxelBox};
@@ -133,7 +135,7 @@ impl<'a> Component<'a> {
     }
 
     /// Whether a point is in a tile.
-    fn is_in<'b>(&self, tile: &'b Tile) -> impl Fn(Vec3) -> bool + 'b {
+    fn is_in<'b>(&self, tile: &'b Tile) -> impl Fn(Vec3) -> bool + Sync + 'b {
         let tiling = self.tiling(0.0);
         move |p| tiling.place(p) == tile.place
     }
@@ -154,9 +156,7 @@ impl<'a> Component<'a> {
         surface: &Surface,
         execution: &mut Execution,
     ) -> Result<(Piece, Patches)> {
-        let is_own = self.is_in(tile);
-        let all = 0..surface.triangles.len();
-        let own = collected(all.map(|t| is_own(centre(surface, t))))?;
+        let own = wanted(surface, self.is_in(tile), execution)?;
         let piece = Piece {
             made_in: (0, tile.place),
             surface: kept(surface, &own)?,
@@ -211,14 +211,14 @@ impl<'a> Component<'a> {
         execution: &mut Execution,
     ) -> Result<Option<(Vec<Piece>, Vec<Patches>)>> {
         let boxes = self.boxes(reach as f64)?;
-        let others = self.received(&pieces, &boxes, team)?;
+        let others = self.received(&pieces, &boxes, team, execution)?;
         extend(&mut pieces, others)?;
         let (mut made, mut patches) = (Vec::new(), Vec::new());
         for (i, &own) in self.own.iter().enumerate() {
             let tile = &self.tiles[own];
             self.take_progress(i, share, share, execution);
             execution.stage("Moving midway", share[0], share[1], MIDWAY_PASSES)?;
-            let around = gathered(&pieces, boxes[own])?;
+            let around = gathered(&pieces, boxes[own], execution)?;
             let surface = work(&self.stages, around, &tile.near.grown(reach), execution)?;
             let (piece, of_tile) = self.piece(tile, &surface, execution)?;
             push(&mut made, piece)?;
@@ -229,12 +229,18 @@ impl<'a> Component<'a> {
     }
 
     /// What other processes have in the boxes of the own tiles.
-    fn received(&self, pieces: &[Piece], boxes: &[Corners], team: &mut Team) -> Result<Vec<Piece>> {
+    fn received(
+        &self,
+        pieces: &[Piece],
+        boxes: &[Corners],
+        team: &mut Team,
+        execution: &Execution,
+    ) -> Result<Vec<Piece>> {
         let mut of_process = vec![Vec::new(); team.processes()];
         for (&worker, corners) in self.workers.iter().zip(boxes) {
             push(&mut of_process[worker], *corners)?;
         }
-        received(pieces, &of_process, team)
+        received(pieces, &of_process, team, execution)
     }
 
     /// Moves the points of all pieces midway. What moves a point far off may have a part in where it goes,
@@ -247,31 +253,37 @@ impl<'a> Component<'a> {
         execution: &mut Execution,
     ) -> Result<Vec<Piece>> {
         let boxes = self.boxes(MOVE_REACH as f64)?;
-        let others = self.received(&pieces, &boxes, team)?;
+        let others = self.received(&pieces, &boxes, team, execution)?;
         let (mut places, mut shared) = (Vec::new(), Vec::new());
         for (i, &own) in self.own.iter().enumerate() {
             let share = [CUT_ENDS, MOVE_ENDS];
             self.take_progress(i, share, share, execution);
             execution.stage("Moving midway", share[0], share[1], MIDWAY_PASSES)?;
-            let around = gathered(pieces.iter().chain(&others), boxes[own])?;
+            let around = gathered(pieces.iter().chain(&others), boxes[own], execution)?;
             let near = self.tiles[own].near.grown(MOVE_REACH);
             let moved = self.stages.moved(&around, &near, execution)?;
-            let all = moved.into_iter().enumerate();
-            let moves = collected(all.map(|(p, to)| (Point::of(&around, p), to)))?;
-            let moves = Moves::new(moves);
-            let to = |point: Point| moves.of(point).unwrap_or(point.place);
+            let to = |Point { part, place }: Point| {
+                number(&around, part, place).map_or(place, |p| moved[p])
+            };
             let surface = &pieces[i].surface;
-            let of_piece = (0..surface.points.len()).map(|p| to(Point::of(surface, p)));
-            push(&mut places, collected(of_piece)?)?;
+            let mut of_piece: Vec<Vec3> = zeros(surface.points.len())?;
+            execution.in_pool(|| {
+                let all = of_piece.par_iter_mut().enumerate();
+                all.for_each(|(p, place)| *place = to(Point::of(surface, p)));
+            });
+            push(&mut places, of_piece)?;
             let of_shared = patches[i].shared.iter().map(|&point| (point, to(point)));
             push(&mut shared, (own, collected(of_shared)?))?;
         }
         let moves = moved_alike(&shared, team)?;
-        for (piece, places) in pieces.iter_mut().zip(places) {
-            for (p, place) in places.into_iter().enumerate() {
-                let point = Point::of(&piece.surface, p);
-                piece.surface.points[p] = moves.of(point).unwrap_or(place);
-            }
+        for (Piece { surface, .. }, mut places) in pieces.iter_mut().zip(places) {
+            execution.in_pool(|| {
+                let all = places.par_iter_mut().enumerate();
+                all.for_each(|(p, place)| {
+                    *place = moves.of(Point::of(surface, p)).unwrap_or(*place);
+                });
+            });
+            surface.points = places;
         }
         Ok(pieces)
     }
@@ -290,7 +302,11 @@ impl<'a> Component<'a> {
         let earlier = SHIFTS.map(|shift| self.tiling(shift));
         let (earlier, tiling) = (&earlier[..round], earlier[round]);
         let is_wanted = |p: Vec3| earlier.iter().all(|t| t.is_near_border(p, far));
-        let places = places(&pieces, &tiling, is_wanted, team)?;
+        let mut are_wanted = Vec::new();
+        for Piece { surface, .. } in &pieces {
+            push(&mut are_wanted, wanted(surface, is_wanted, execution)?)?;
+        }
+        let places = places(&pieces, &tiling, &are_wanted, team, execution)?;
         let boxes = places.iter().map(|place| {
             let [low, high] = tiling.corners(*place);
             [low.map(|v| v - far), high.map(|v| v + far)]
@@ -300,7 +316,7 @@ impl<'a> Component<'a> {
         for (i, corners) in boxes.iter().enumerate() {
             push(&mut of_process[i % team.processes()], *corners)?;
         }
-        let others = received(&pieces, &of_process, team)?;
+        let others = received(&pieces, &of_process, team, execution)?;
         let mut made = Vec::new();
         let before = if round == 0 {
             Before::Any
@@ -312,14 +328,15 @@ impl<'a> Component<'a> {
             let at =
                 |tile: usize| from + (to - from) * (tile as f64 / places.len() as f64).min(1.0);
             execution.stage("Remeshing", at(i), at(i + team.processes()), 1)?;
-            let around = gathered(pieces.iter().chain(&others), boxes[i])?;
+            let around = gathered(pieces.iter().chain(&others), boxes[i], execution)?;
             let is_own = |p: Vec3| tiling.place(p) == places[i] && is_wanted(p);
             let surface = self.stages.remeshed(&around, is_own, before, execution)?;
             let made_in = (round, places[i]);
             push(&mut made, Piece { made_in, surface })?;
         }
-        for piece in &mut pieces {
-            piece.surface = chosen(&piece.surface, |p| !is_wanted(p))?;
+        for (Piece { surface, .. }, mut stays) in pieces.iter_mut().zip(are_wanted) {
+            stays.iter_mut().for_each(|stays| *stays = !*stays);
+            *surface = kept(surface, &stays)?;
         }
         pieces.retain(|piece| !piece.surface.triangles.is_empty());
         extend(&mut pieces, made)?;
@@ -335,14 +352,14 @@ impl<'a> Component<'a> {
     ) -> Result<Option<TileMesh>> {
         let reach = FINISH_REACH * self.stages.wanted;
         let boxes = self.boxes(reach)?;
-        let others = self.received(&pieces, &boxes, team)?;
+        let others = self.received(&pieces, &boxes, team, execution)?;
         extend(&mut pieces, others)?;
         let (mut meshes, mut patches) = (Vec::new(), Vec::new());
         for (i, &own) in self.own.iter().enumerate() {
             let step = [ROUNDS_END[SHIFTS.len()], 1.0];
             self.take_progress(i, step, [FINISH_BEGINS, 1.0], execution);
             let tile = &self.tiles[own];
-            let around = gathered(&pieces, boxes[own])?;
+            let around = gathered(&pieces, boxes[own], execution)?;
             let near = tile.near.grown(reach.ceil() as usize);
             let is_own = self.is_in(tile);
             let (surface, mesh, own) = self.stages.finished(around, &near, is_own, execution)?;
@@ -417,13 +434,28 @@ fn shared_sums(own: &[BrickSums], team: &mut Team) -> Result<Vec<BrickSums>> {
 fn places(
     pieces: &[Piece],
     tiling: &Tiling,
-    is_wanted: impl Fn(Vec3) -> bool,
+    are_wanted: &[Vec<bool>],
     team: &mut Team,
+    execution: &Execution,
 ) -> Result<Vec<Place>> {
     let mut places = BTreeSet::new();
-    for Piece { surface, .. } in pieces {
-        let centres = (0..surface.triangles.len()).map(|t| centre(surface, t));
-        places.extend(centres.filter(|p| is_wanted(*p)).map(|p| tiling.place(p)));
+    for (Piece { surface, .. }, wanted) in pieces.iter().zip(are_wanted) {
+        let place_of = |t: usize| tiling.place(centre(surface, t));
+        let add = |mut places: BTreeSet<Place>, t: usize| {
+            if wanted[t] {
+                places.insert(place_of(t));
+            }
+            places
+        };
+        let of_piece = execution.in_pool(|| {
+            let all = (0..wanted.len()).into_par_iter();
+            all.fold(BTreeSet::new, add)
+                .reduce(BTreeSet::new, |mut a, mut b| {
+                    a.append(&mut b);
+                    a
+                })
+        });
+        places.extend(of_piece);
     }
     let message: Vec<i64> = places.iter().flatten().map(|&v| v.into()).collect();
     for message in team.share(&message)? {

@@ -11,6 +11,7 @@ use crate::lots::Sizes;
 use crate::mask::Mask;
 use crate::mesh::Mesh;
 use crate::midway::Label;
+use crate::mosaic::chosen;
 use crate::reading::read_parts;
 use crate::ridge_surface::{find_sheets, ridge_surface};
 use crate::statistics::{statistics, Statistics, TriangleMesh};
@@ -215,7 +216,7 @@ fn contours_of_tiles_are_those_of_the_whole_to_the_bit() {
     let mut found = Vec::new();
     for tile in &component.tiles {
         let (surface, _) = stages.contour(&tile.near, 1.0, execution).unwrap();
-        let own = chosen(&surface, component.is_in(tile)).unwrap();
+        let own = chosen(&surface, component.is_in(tile), execution).unwrap();
         found.extend(own.triangles.iter().map(|t| corners(&own, t)));
     }
     let batch = &Batch::new(&parts, grid.dimensions).unwrap();
