@@ -354,21 +354,16 @@ fn crossed(surface: &Surface, first: usize) -> Result<Vec<[u32; 2]>> {
 /// the scraps that they leave.
 pub(crate) fn remove(surface: &mut Surface, goes: &[bool], first: usize) -> Result<()> {
     let mut among: Vec<bool> = zeros(surface.points.len())?;
-    let sources = surface.source.iter().max().map_or(0, |s| *s as usize + 1);
-    let mut is_cut: Vec<bool> = zeros(sources)?;
-    for (triangle, _) in surface.triangles[..first]
-        .iter()
-        .zip(goes)
-        .filter(|(_, goes)| **goes)
-    {
+    let cut = surface.triangles[..first].iter().zip(goes);
+    for (triangle, _) in cut.filter(|(_, goes)| **goes) {
         triangle.iter().for_each(|&p| among[p as usize] = true);
-        is_cut[surface.source[triangle[0] as usize] as usize] = true;
     }
     let mut goes = goes.iter();
     surface.triangles.retain(|_| goes.next() == Some(&false));
-    if is_cut.contains(&true) {
+    if among.contains(&true) {
         split_points_among(surface, &among)?;
-        drop_scraps(surface, |part| is_cut[part])?;
+        // Points that were split off are new.
+        drop_scraps(surface, |p| among.get(p).is_none_or(|among| *among))?;
         *surface = std::mem::take(surface).compact()?;
     }
     Ok(())
@@ -446,5 +441,19 @@ mod tests {
         let before = surface.triangles.clone();
         assert!(!close(&mut surface, &[patch]).unwrap());
         assert_eq!(surface.triangles, before);
+    }
+
+    #[test]
+    fn scraps_are_dropped_where_triangles_go_and_nowhere_else() {
+        let mut surface = Surface::default();
+        add_row(&mut surface, 30, |x, y| [x, y, 0.0]);
+        add_row(&mut surface, 3, |x, y| [x, y, 9.0]);
+        // All but three squares of the long row are left, in two pieces, the second one a scrap.
+        let mut goes = vec![false; surface.triangles.len()];
+        goes[2 * 22..2 * 25].fill(true);
+        remove(&mut surface, &goes, 66).unwrap();
+        assert_eq!(surface.triangles.len(), 2 * 22 + 2 * 3);
+        let high = surface.points.iter().filter(|p| p[2] == 9.0).count();
+        assert_eq!(high, 8);
     }
 }

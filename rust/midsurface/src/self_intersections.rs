@@ -252,15 +252,11 @@ fn cut_away(
             goes[cut as usize] = true;
         }
     }
-    let sources = surface.source.iter().max().map_or(0, |s| *s as usize + 1);
-    let mut is_cut: Vec<bool> = zeros(sources)?;
-    for (triangle, _) in triangles.iter().zip(&goes).filter(|(_, goes)| **goes) {
-        is_cut[surface.source[triangle[0] as usize] as usize] = true;
-    }
     let mut goes = goes.into_iter();
     surface.triangles.retain(|_| goes.next() == Some(false));
     make_manifold(surface, execution)?;
-    drop_scraps(surface, |part| is_cut[part])?;
+    // Points that were split off are new.
+    drop_scraps(surface, |p| taken.get(p).is_none_or(|taken| *taken))?;
     *surface = std::mem::take(surface).compact()?;
     Ok(())
 }
@@ -373,5 +369,14 @@ mod tests {
         assert_eq!(after.triangles.iter().filter(flat).count(), 2 * 12 * 12);
         let above = |t: &&[u32; 3]| t.iter().all(|&p| after.points[p as usize][2] > 0.5);
         assert!(after.triangles.iter().filter(above).count() >= 2 * 6 * 6);
+    }
+
+    #[test]
+    fn what_is_cut_in_one_place_leaves_small_pieces_elsewhere() {
+        let mut surface = sheets_at(-0.9);
+        let cut = uncrossed(sheets_at(-0.9), 2).triangles.len();
+        assert!(cut < surface.triangles.len());
+        add_lattice(&mut surface, [2, 2], |x, y| [50.0 + x, y, 0.0]);
+        assert_eq!(uncrossed(surface, 2).triangles.len(), cut + 8);
     }
 }
