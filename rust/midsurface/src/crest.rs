@@ -15,6 +15,7 @@ use crate::eigen::{eigenvalues, eigenvector};
 use crate::error::{collected, filled, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot as dot3, last_voxel, Vec3};
+use crate::interpolation::Sampler;
 use crate::lag::{self, turn_lagging};
 use crate::profile::{Derivatives, Profile};
 use crate::separable::{self, smooth_some, Kernel};
@@ -37,6 +38,10 @@ const LONG: f32 = 1.25;
 const RHO_BOUNDS: [f32; 2] = [1.2, 3.4];
 /// Kernels of ρ are made at steps of this ratio.
 const RHO_STEP: f32 = 1.1892;
+/// The middle that a voxel beside the label tells of is at least so deep in the label, work units. Beyond
+/// a ragged rim the profile has crests of its own between the spurs, and sheets would be led on from
+/// these.
+const FOUNDED: f64 = 0.6;
 /// A border of the volume cuts a sheet's profile within this many σ, along the normal.
 const REACH: f32 = 2.3;
 
@@ -143,6 +148,7 @@ fn find(
                 );
             },
         );
+        drop_unfounded((batch, brick), distance, h, sheets);
         if let Some(border) = border(brick) {
             for (i, sheet) in sheets.iter_mut().enumerate() {
                 if border.cuts(i, [sheet[0], sheet[1], sheet[2]]) {
@@ -237,6 +243,35 @@ impl<'a> Border<'a> {
                 .entry(voxel)
                 .is_some_and(|entry| self.distance[entry] > 0.0)
         })
+    }
+}
+
+/// Drops the sheets of a brick's voxels beside the label that tell of a middle where hardly any label is.
+fn drop_unfounded(
+    (batch, brick): (&Batch, usize),
+    distance: &[f32],
+    h: Vec3,
+    sheets: &mut [Sheet],
+) {
+    let (directory, place) = batch.brick(brick);
+    let field = distance;
+    let depth = Sampler {
+        directory,
+        field,
+        h,
+    };
+    let own = &distance[brick * BRICK..][..BRICK];
+    for (i, (sheet, d)) in sheets.iter_mut().zip(own).enumerate() {
+        if *d > 0.0 || *sheet == Sheet::default() {
+            continue;
+        }
+        let within = [i % EDGE, i / EDGE % EDGE, i / LAYER];
+        let middle = std::array::from_fn(|a| {
+            (place[a] * EDGE + within[a]) as f64 * h[a] + f64::from(sheet[3] * sheet[a])
+        });
+        if depth.linear(middle) < FOUNDED {
+            *sheet = Sheet::default();
+        }
     }
 }
 

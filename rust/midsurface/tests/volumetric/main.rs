@@ -7,6 +7,7 @@ mod image_file;
 mod junctions;
 mod phantoms_known;
 mod real_volumes;
+mod rims;
 mod warnings;
 
 use midsurface::{extract, Grid, Mesh, Method, Options, Quiet, Volume};

@@ -116,9 +116,9 @@ must!(
 );
 must!(disk_in_slices_clean, "disk in slices", CLEAN);
 must!(disk_in_slices_noisy, "disk in slices", NOISY);
-falls_short!(cap_clean, "cap", CLEAN);
-falls_short!(cap_noisy, "cap", NOISY);
-falls_short!(cap_2_thick_clean, "cap 2 thick", CLEAN);
+must!(cap_clean, "cap", CLEAN);
+must!(cap_noisy, "cap", NOISY);
+must!(cap_2_thick_clean, "cap 2 thick", CLEAN);
 must!(cap_2_thick_noisy, "cap 2 thick", NOISY);
 must!(disk_3_to_12_thick_clean, "disk 3 to 12 thick", CLEAN);
 must!(disk_3_to_12_thick_noisy, "disk 3 to 12 thick", NOISY);
@@ -143,7 +143,7 @@ must!(
     "disk with a hole, 1 thick",
     CLEAN
 );
-falls_short!(
+must!(
     disk_with_a_hole_1_thick_noisy,
     "disk with a hole, 1 thick",
     NOISY
@@ -199,7 +199,7 @@ must!(
     NOISY
 );
 must!(two_sheets_3_apart_clean, "two sheets 3 apart", CLEAN);
-falls_short!(two_sheets_3_apart_noisy, "two sheets 3 apart", NOISY);
+must!(two_sheets_3_apart_noisy, "two sheets 3 apart", NOISY);
 must!(two_sheets_2_apart_clean, "two sheets 2 apart", CLEAN);
 must!(two_sheets_2_apart_noisy, "two sheets 2 apart", NOISY);
 must!(two_sheets_1_apart_clean, "two sheets 1 apart", CLEAN);
