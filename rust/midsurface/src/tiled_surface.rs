@@ -99,6 +99,8 @@ pub(crate) fn tiled_surface(
 struct Component<'a> {
     stages: Stages<'a>,
     side: usize,
+    /// What encloses the component.
+    bounds: VoxelBox,
     tiles: Vec<Tile>,
     /// Whose each tile is, and the numbers of the own ones.
     workers: Vec<usize>,
@@ -116,7 +118,8 @@ impl<'a> Component<'a> {
         execution: &Execution,
     ) -> Result<Self> {
         let stages = Stages::new(parts, grid, edge_length);
-        let tiling = Tiling::new(side, 0.0, grid.dimensions, stages.h);
+        let bounds = VoxelBox::around(parts);
+        let tiling = Tiling::new(side, 0.0, &bounds, stages.h);
         let tiles = tiles(parts, &tiling)?;
         let workers = dealt(&tiles, team.processes())?;
         let all = 0..tiles.len();
@@ -124,6 +127,7 @@ impl<'a> Component<'a> {
             own: collected(all.filter(|&t| workers[t] == team.process()))?,
             stages,
             side,
+            bounds,
             tiles,
             workers,
             span: execution.span(),
@@ -131,7 +135,7 @@ impl<'a> Component<'a> {
     }
 
     fn tiling(&self, shift: f64) -> Tiling {
-        Tiling::new(self.side, shift, self.stages.grid.dimensions, self.stages.h)
+        Tiling::new(self.side, shift, &self.bounds, self.stages.h)
     }
 
     /// Whether a point is in a tile.

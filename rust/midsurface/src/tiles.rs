@@ -1,8 +1,9 @@
 //! The volume cut into tiles, cubes of voxels, so that a component may be larger than what is worked
 //! on at once.
 //!
-//! Tiles lie where the volume's voxels are, whatever number of threads or processes there is. A tile
-//! is worked on with a margin around it wide enough that what comes out within does not depend on what
+//! Tiles lie where the component's voxels are, whatever number of threads or processes there is: counted
+//! from its own lower corner, so that a sheet in the middle of the volume is not halved along its
+//! length, each half with a margin as large as the other. A tile is worked on with a margin around it wide enough that what comes out within does not depend on what
 //! lies beyond: stages have bounded support.
 
 use std::collections::BTreeMap;
@@ -22,6 +23,8 @@ const OFF_LABEL: usize = 4;
 /// A grid of tiles; the last one along an axis takes what is left where that is less than half a side.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tiling {
+    /// The first voxel of the first tile, where the grid is not moved; the first of a brick, too.
+    first: [i64; 3],
     /// Voxels along a tile's edge.
     side: usize,
     /// How far the grid is moved along each axis, in sides.
@@ -33,19 +36,26 @@ pub(crate) struct Tiling {
 }
 
 impl Tiling {
-    pub fn new(side: usize, shift: f64, dimensions: [usize; 3], h: Vec3) -> Self {
-        let last = |n: usize| (n as f64 / side as f64 + shift - 0.5).max(0.0) as i32;
+    /// The tiles of what lies in a box of voxels.
+    pub fn new(side: usize, shift: f64, bounds: &VoxelBox, h: Vec3) -> Self {
+        let first = bounds.from.map(|v| v - v.rem_euclid(EDGE as i64));
+        let last = |a: usize| {
+            let count = (bounds.to[a] - first[a]) as f64;
+            (count / side as f64 + shift - 0.5).max(0.0) as i32
+        };
         Self {
+            first,
             side,
             shift,
-            last: dimensions.map(last),
+            last: std::array::from_fn(last),
             h,
         }
     }
 
     /// Tiles counted from the first one's border to a point, work units, along an axis.
     fn along(&self, p: Vec3, axis: usize) -> f64 {
-        p[axis] / (self.h[axis] * self.side as f64) + self.shift
+        let from_first = p[axis] / self.h[axis] - self.first[axis] as f64;
+        from_first / self.side as f64 + self.shift
     }
 
     /// The tile that a point is in, work units; one beyond the border of the volume is in the nearest.
@@ -56,7 +66,10 @@ impl Tiling {
     /// The tile that a voxel is in, in a grid that is not moved.
     fn place_of_voxel(&self, voxel: [i64; 3]) -> Place {
         let side = self.side as i64;
-        std::array::from_fn(|a| ((voxel[a] / side) as i32).clamp(0, self.last[a]))
+        std::array::from_fn(|a| {
+            let tile = (voxel[a] - self.first[a]) / side;
+            (tile as i32).clamp(0, self.last[a])
+        })
     }
 
     /// The tile that a brick is in, in a grid that is not moved.
@@ -64,22 +77,25 @@ impl Tiling {
         self.place_of_voxel(place.map(|v| (v * EDGE) as i64))
     }
 
-    /// The voxels of a tile, in a grid that is not moved; the last one's reach beyond the volume.
+    /// The voxels of a tile, in a grid that is not moved; the last one's reach beyond the component.
     fn voxels(&self, place: Place) -> VoxelBox {
         let side = self.side as i64;
+        let border = |a: usize, tile: i32| self.first[a] + i64::from(tile) * side;
         VoxelBox {
-            from: place.map(|v| i64::from(v) * side),
+            from: std::array::from_fn(|a| border(a, place[a])),
             to: std::array::from_fn(|a| {
                 let is_last = place[a] == self.last[a];
-                (i64::from(place[a]) + 1 + i64::from(is_last)) * side
+                border(a, place[a] + 1 + i32::from(is_last))
             }),
         }
     }
 
-    /// The lower and the upper corner of a tile, work units; there is none where the volume ends.
+    /// The lower and the upper corner of a tile, work units; there is none where no other tile follows.
     pub fn corners(&self, place: Place) -> [Vec3; 2] {
-        let corner =
-            |a: usize, tile: i32| (f64::from(tile) - self.shift) * self.side as f64 * self.h[a];
+        let corner = |a: usize, tile: i32| {
+            let from_first = (f64::from(tile) - self.shift) * self.side as f64;
+            (self.first[a] as f64 + from_first) * self.h[a]
+        };
         let low = |a: usize| match place[a] {
             0 => f64::NEG_INFINITY,
             tile => corner(a, tile),
@@ -134,6 +150,20 @@ impl VoxelBox {
     pub fn reaching(&self, voxels: f64, h: Vec3) -> [Vec3; 2] {
         let corner = |of: [i64; 3], by: f64| std::array::from_fn(|a| (of[a] as f64 + by) * h[a]);
         [corner(self.from, -voxels), corner(self.to, voxels)]
+    }
+
+    /// The box of all voxels of the parts.
+    pub fn around(parts: &[Part]) -> Self {
+        let runs = parts.iter().flat_map(|part| &part.runs);
+        let both = |mut all: Self, own: Self| {
+            all.add(&own);
+            all
+        };
+        let none = Self {
+            from: [0; 3],
+            to: [0; 3],
+        };
+        runs.map(Self::of).reduce(both).unwrap_or(none)
     }
 
     /// The box of a run.
@@ -219,11 +249,18 @@ mod tests {
         }
     }
 
+    fn cube(from: i64, to: i64) -> VoxelBox {
+        VoxelBox {
+            from: [from; 3],
+            to: [to; 3],
+        }
+    }
+
     #[test]
     fn tiles_are_where_the_label_is_or_nearly_so() {
-        let tiling = |n: usize| Tiling::new(32, 0.0, [n; 3], [1.0; 3]);
+        let tiling = |n: i64| Tiling::new(32, 0.0, &cube(0, n), [1.0; 3]);
         let parts = [part(&[[40, 40, 10, 50], [41, 40, 10, 30]])];
-        let places = |n: usize| {
+        let places = |n: i64| {
             let found = tiles(&parts, &tiling(n)).unwrap();
             found.iter().map(|t| t.place).collect::<Vec<_>>()
         };
@@ -257,10 +294,30 @@ mod tests {
 
     #[test]
     fn the_border_of_tiles_is_told() {
-        let tiling = Tiling::new(10, 0.5, [40; 3], [1.0, 1.0, 2.0]);
+        let tiling = Tiling::new(10, 0.5, &cube(0, 40), [1.0, 1.0, 2.0]);
         assert_eq!(tiling.place([4.9, 5.1, 9.0]), [0, 1, 0]);
         assert_eq!(tiling.corners([0, 1, 0])[1], [5.0, 15.0, 10.0]);
         assert!(tiling.is_near_border([0.0, 0.0, 9.1], 1.0));
         assert!(!tiling.is_near_border([0.0, 0.0, 8.0], 1.0));
+    }
+
+    #[test]
+    fn tiles_are_counted_from_the_first_brick_of_a_component() {
+        let sheet = [part(&[[60, 3, 100, 170], [68, 100, 100, 170]])];
+        let bounds = VoxelBox::around(&sheet);
+        assert_eq!(bounds.from, [100, 3, 60]);
+        assert_eq!(bounds.to, [170, 101, 69]);
+        let tiling = Tiling::new(64, 0.0, &bounds, [1.0; 3]);
+        // One layer of tiles along z, though it lies on both sides of a multiple of the side.
+        let found = tiles(&sheet, &tiling).unwrap();
+        let places: Vec<_> = found.iter().map(|t| t.place).collect();
+        assert_eq!(places, [[0, 0, 0], [0, 1, 0]]);
+        assert_eq!(tiling.corners([0, 0, 0])[1][1], 64.0);
+        assert_eq!(tiling.place([0.0, 64.5, 200.0]), [0, 1, 0]);
+        assert_eq!(tiling.place_of_brick([0; 3]), [0; 3]);
+        assert_eq!(tiling.place_of_brick([12, 8, 7]), [0, 1, 0]);
+        let shifted = Tiling::new(64, 0.5, &bounds, [1.0; 3]);
+        assert_eq!(shifted.place([96.0, 31.5, 60.0]), [0, 0, 0]);
+        assert_eq!(shifted.place([96.0, 32.5, 60.0]), [0, 1, 0]);
     }
 }
