@@ -254,10 +254,9 @@ fn drop_unfounded(
     sheets: &mut [Sheet],
 ) {
     let (directory, place) = batch.brick(brick);
-    let field = distance;
     let depth = Sampler {
         directory,
-        field,
+        field: distance,
         h,
     };
     let own = &distance[brick * BRICK..][..BRICK];

@@ -1,10 +1,10 @@
-//! The volume cut into tiles, cubes of voxels, so that a component may be larger than what is worked
-//! on at once.
+//! A component cut into tiles, cubes of voxels, so that it may be larger than what is worked on at once.
 //!
 //! Tiles lie where the component's voxels are, whatever number of threads or processes there is: counted
 //! from its own lower corner, so that a sheet in the middle of the volume is not halved along its
-//! length, each half with a margin as large as the other. A tile is worked on with a margin around it wide enough that what comes out within does not depend on what
-//! lies beyond: stages have bounded support.
+//! length, each half with a margin as large as the other. A tile is worked on with a margin around it
+//! wide enough that what comes out within does not depend on what lies beyond: stages have bounded
+//! support.
 
 use std::collections::BTreeMap;
 
@@ -90,7 +90,7 @@ impl Tiling {
         }
     }
 
-    /// The lower and the upper corner of a tile, work units; there is none where no other tile follows.
+    /// The lower and the upper corner of a tile, work units; there is none where no other tile lies.
     pub fn corners(&self, place: Place) -> [Vec3; 2] {
         let corner = |a: usize, tile: i32| {
             let from_first = (f64::from(tile) - self.shift) * self.side as f64;
