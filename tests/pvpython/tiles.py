@@ -83,9 +83,7 @@ def main():
         expected = np.load(path + ".npz")
         assert sorted(found) == sorted(expected.files), set(found) ^ set(expected.files)
         for name in expected.files:
-            # Sums of the same figures in another order.
-            tolerance = 1e-12 if name.startswith("table") else 0
-            np.testing.assert_allclose(found[name], expected[name], rtol=tolerance, err_msg=name)
+            np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
     print(f"the same with {processes} processes")
 
 

@@ -143,9 +143,9 @@ pub unsafe extern "C" fn midsurface_measure(
 }
 
 /// Measures a mesh of which each of several processes holds a piece, as midsurface_extract_piece makes
-/// them: as midsurface_measure does, in all. A component of several processes is put together on one of
-/// them, which takes the numbers of its points. All processes have to call this at once; the first gets
-/// the table, the others an empty one.
+/// them: as midsurface_measure does, in all. Where a component is that of several processes the numbers of
+/// its points have to be known; none of them gets the mesh of another. All processes have to call this at
+/// once; the first gets the table, the others an empty one.
 ///
 /// mesh: what this process holds, maybe nothing.
 /// exchange: how it reaches the others.

@@ -227,6 +227,13 @@ impl Drop for Team<'_> {
     }
 }
 
+/// Takes so many numbers from the beginning of a message.
+pub(crate) fn taken<const N: usize>(message: &mut &[i64]) -> Result<[i64; N]> {
+    let (numbers, rest) = message.split_first_chunk().ok_or(Error::Pieces)?;
+    *message = rest;
+    Ok(*numbers)
+}
+
 /// A text as numbers, a byte each.
 pub(crate) fn numbers(text: &str) -> Vec<i64> {
     text.bytes().map(i64::from).collect()

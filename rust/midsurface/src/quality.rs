@@ -1,6 +1,8 @@
 //! The figures a mesh is judged by (MidSurfer, section "Mesh quality").
 
-use crate::error::{zeros, Result};
+use crate::error::{extend, zeros, Result};
+use crate::exact_sum::ExactSum;
+use crate::exchange::taken;
 use crate::grid::{cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::Edges;
 use crate::mesh::Mesh;
@@ -35,132 +37,160 @@ impl Mesh {
             .iter()
             .map(|t| t.map(|p| self.points[p as usize].map(f64::from)));
         let edges = Edges::new(&self.triangles, self.points.len())?;
-        Ok(QualitySums::of(corners, &edges, self.points.len())?.quality())
+        let mut valences = Valences::new(self.points.len())?;
+        for (a, b, group) in edges.groups() {
+            valences.add([a, b].map(|p| p as usize), group.len());
+        }
+        let mut interior = Interior::default();
+        (0..self.points.len()).for_each(|p| interior.add_point(&valences, p));
+        Ok(ShapeSums::of(corners).quality(&interior))
     }
 }
 
-/// What [`Quality`] is made of: figures that add up over the pieces of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct QualitySums {
-    triangles: f64,
-    area: f64,
+/// What triangles add up to for [`Quality`], whatever their order, to the bit.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ShapeSums {
+    pub triangles: usize,
+    area: ExactSum,
     smallest: f64,
-    q: f64,
-    smallest_angle: f64,
-    under_30: f64,
-    over_120: f64,
-    interior: f64,
-    valence_567: f64,
+    q: ExactSum,
+    smallest_angle: ExactSum,
+    under_30: usize,
+    over_120: usize,
 }
 
-impl QualitySums {
-    /// Of triangles given by their corners, with the edges of a mesh of `points` points, all in use.
-    pub fn of(
-        triangles: impl Iterator<Item = [Vec3; 3]>,
-        edges: &Edges,
-        points: usize,
-    ) -> Result<Self> {
-        let [interior, valence_567] = valences(edges, points)?;
-        let mut sums = Self::from([
-            0.0,
-            0.0,
-            f64::INFINITY,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            interior,
-            valence_567,
-        ]);
+impl Default for ShapeSums {
+    fn default() -> Self {
+        Self {
+            triangles: 0,
+            area: ExactSum::default(),
+            smallest: f64::INFINITY,
+            q: ExactSum::default(),
+            smallest_angle: ExactSum::default(),
+            under_30: 0,
+            over_120: 0,
+        }
+    }
+}
+
+impl ShapeSums {
+    /// Of triangles given by their corners.
+    pub fn of(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
+        let mut sums = Self::default();
         for triangle in triangles {
             let (area, q, angles) = shape(triangle);
-            let count = |f: &dyn Fn(f64) -> bool| angles.iter().filter(|&&a| f(a)).count() as f64;
-            sums.triangles += 1.0;
-            sums.area += area;
+            let count = |f: &dyn Fn(f64) -> bool| angles.iter().filter(|&&a| f(a)).count();
+            sums.triangles += 1;
+            sums.area.add(area);
             sums.smallest = sums.smallest.min(q);
-            sums.q += q;
-            sums.smallest_angle += angles.iter().copied().fold(f64::INFINITY, f64::min);
+            sums.q.add(q);
+            let smallest = angles.iter().copied().fold(f64::INFINITY, f64::min);
+            sums.smallest_angle.add(smallest);
             sums.under_30 += count(&|a| a < 30.0);
             sums.over_120 += count(&|a| a > 120.0);
         }
-        Ok(sums)
+        sums
     }
 
-    /// The sums of two pieces that share no points.
-    pub fn add(&self, other: &Self) -> Self {
-        let (a, b) = (self.numbers(), other.numbers());
-        let mut sums: [f64; Self::LENGTH] = std::array::from_fn(|i| a[i] + b[i]);
-        sums[2] = self.smallest.min(other.smallest);
-        Self::from(sums)
+    /// Adds those of other triangles.
+    pub fn add(&mut self, other: &Self) {
+        self.triangles += other.triangles;
+        self.area.add_sum(&other.area);
+        self.smallest = self.smallest.min(other.smallest);
+        self.q.add_sum(&other.q);
+        self.smallest_angle.add_sum(&other.smallest_angle);
+        self.under_30 += other.under_30;
+        self.over_120 += other.over_120;
     }
 
-    /// How many numbers there are.
-    pub const LENGTH: usize = 9;
-
-    pub fn numbers(&self) -> [f64; Self::LENGTH] {
-        [
-            self.triangles,
-            self.area,
-            self.smallest,
-            self.q,
-            self.smallest_angle,
-            self.under_30,
-            self.over_120,
-            self.interior,
-            self.valence_567,
-        ]
+    /// Appends the sums to a message for another process.
+    pub fn pack(&self, message: &mut Vec<i64>) -> Result<()> {
+        let counts = [self.triangles, self.under_30, self.over_120];
+        extend(message, counts.map(|n| n as i64))?;
+        extend(message, [self.smallest.to_bits() as i64])?;
+        for sum in [&self.area, &self.q, &self.smallest_angle] {
+            sum.pack(message)?;
+        }
+        Ok(())
     }
 
-    pub fn quality(&self) -> Quality {
-        if self.triangles == 0.0 {
+    /// Takes sums from the beginning of a message.
+    pub fn unpack(message: &mut &[i64]) -> Result<Self> {
+        let [triangles, under_30, over_120, smallest] = taken(message)?;
+        Ok(Self {
+            triangles: triangles as usize,
+            smallest: f64::from_bits(smallest as u64),
+            under_30: under_30 as usize,
+            over_120: over_120 as usize,
+            area: ExactSum::unpack(message)?,
+            q: ExactSum::unpack(message)?,
+            smallest_angle: ExactSum::unpack(message)?,
+        })
+    }
+
+    /// The quality of the triangles, whose points off the boundary are told.
+    pub fn quality(&self, interior: &Interior) -> Quality {
+        if self.triangles == 0 {
             return Quality::default();
         }
+        let triangles = self.triangles as f64;
         Quality {
-            area: self.area,
+            area: self.area.value(),
             smallest: self.smallest,
-            mean: self.q / self.triangles,
-            mean_smallest_angle: self.smallest_angle / self.triangles,
-            share_under_30: self.under_30 / (3.0 * self.triangles),
-            share_over_120: self.over_120 / (3.0 * self.triangles),
-            valence_567: self.valence_567 / self.interior.max(1.0),
+            mean: self.q.value() / triangles,
+            mean_smallest_angle: self.smallest_angle.value() / triangles,
+            share_under_30: self.under_30 as f64 / (3.0 * triangles),
+            share_over_120: self.over_120 as f64 / (3.0 * triangles),
+            valence_567: interior.valence_567 as f64 / (interior.points as f64).max(1.0),
         }
     }
 }
 
-impl From<[f64; QualitySums::LENGTH]> for QualitySums {
-    fn from(numbers: [f64; Self::LENGTH]) -> Self {
-        let [triangles, area, smallest, q, smallest_angle, under_30, over_120, interior, valence_567] =
-            numbers;
-        Self {
-            triangles,
-            area,
-            smallest,
-            q,
-            smallest_angle,
-            under_30,
-            over_120,
-            interior,
-            valence_567,
+/// How many edges each point has, and whether one of them is on the boundary.
+pub(crate) struct Valences {
+    pub edges: Vec<u32>,
+    pub on_boundary: Vec<bool>,
+}
+
+impl Valences {
+    /// Of so many points before there is any edge.
+    pub fn new(points: usize) -> Result<Self> {
+        Ok(Self {
+            edges: zeros(points)?,
+            on_boundary: zeros(points)?,
+        })
+    }
+
+    /// Adds an edge that so many triangles have.
+    pub fn add(&mut self, ends: [usize; 2], triangles: usize) {
+        for p in ends {
+            self.edges[p] += 1;
+            self.on_boundary[p] |= triangles == 1;
         }
     }
 }
 
 /// Number of points off the boundary, and of those among them that have five to seven edges.
-fn valences(edges: &Edges, points: usize) -> Result<[f64; 2]> {
-    let mut valence: Vec<u32> = zeros(points)?;
-    let mut boundary: Vec<bool> = zeros(points)?;
-    for (a, b, group) in edges.groups() {
-        for p in [a, b] {
-            valence[p as usize] += 1;
-            boundary[p as usize] |= group.len() == 1;
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Interior {
+    pub points: usize,
+    pub valence_567: usize,
+}
+
+impl Interior {
+    /// Counts a point where it is one.
+    pub fn add_point(&mut self, valences: &Valences, p: usize) {
+        if !valences.on_boundary[p] {
+            self.points += 1;
+            self.valence_567 += usize::from((5..=7).contains(&valences.edges[p]));
         }
     }
-    let interior = boundary.iter().filter(|b| !**b).count();
-    let good = valence
-        .iter()
-        .zip(&boundary)
-        .filter(|(v, b)| !**b && (5..=7).contains(*v));
-    Ok([interior as f64, good.count() as f64])
+
+    /// Adds other points.
+    pub fn add(&mut self, other: &Self) {
+        self.points += other.points;
+        self.valence_567 += other.valence_567;
+    }
 }
 
 /// Area, Q and the angles in degrees.
