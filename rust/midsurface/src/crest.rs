@@ -9,6 +9,8 @@
 //! ribbon hardly wider than it is thick no voxel would be one: there more bend is allowed. The
 //! sheets of the other voxels follow from those of their core neighbours (`extension.rs`).
 
+use rayon::prelude::*;
+
 use crate::block::{matrix_at, vector_at, Block, Row};
 use crate::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
 use crate::eigen::{eigenvalues, eigenvector};
@@ -18,8 +20,9 @@ use crate::grid::{dot as dot3, last_voxel, Vec3};
 use crate::interpolation::Sampler;
 use crate::lag::{self, turn_lagging};
 use crate::profile::{Derivatives, Profile};
-use crate::separable::{self, smooth_some, Kernel};
+use crate::separable::Kernel;
 use crate::sheet::{dot, is_trusted, source, unshrink, voxel_along, Sheet, ENTRIES};
+use crate::slabs::{smooth_in_slabs, Bricks};
 use crate::vectors::with_widest_vectors;
 
 /// A core voxel's profile falls within the sheet by at most this much, in σ² times curvature.
@@ -46,33 +49,41 @@ const FOUNDED: f64 = 0.6;
 const REACH: f32 = 2.3;
 
 /// Passes over all bricks that [`core_sheets`] makes, for its progress.
-pub(crate) const PASSES: usize = 6 + separable::PASSES + lag::PASSES;
+pub(crate) const PASSES: usize = 4 + lag::PASSES;
 
 /// The sheets of the core voxels of a batch, with offsets of up to `farthest`.
 pub(crate) fn core_sheets(
     batch: &Batch,
-    profile: &Profile,
+    profile: Profile,
     distance: &[f32],
     farthest: f32,
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<Vec<Sheet>> {
     let bricks = batch.part_of_brick.len();
-    let sigma = execution.collect(bricks, |brick| mean_sigma(profile, batch, brick))?;
+    let sigma = execution.collect(bricks, |brick| mean_sigma(&profile, batch, brick))?;
     let mut sheets: Vec<Sheet> = zeros(bricks * BRICK)?;
     let mut weight = batch.field()?;
     let label = (batch, distance, farthest, h);
     let mut find = |wanted: &[bool], bent, sheets: &mut [Sheet]| {
         let of_sheets = (sheets, &mut weight[..]);
-        find(label, profile, &sigma, (wanted, bent), of_sheets, execution)
+        find(
+            label,
+            &profile,
+            &sigma,
+            (wanted, bent),
+            of_sheets,
+            execution,
+        )
     };
     find(&filled(true, bricks)?, BENT, &mut sheets)?;
     let ribbons = bricks_without_core(batch, &sheets)?;
     if ribbons.contains(&true) {
         find(&ribbons, RIBBON, &mut sheets)?;
     }
-    let known = (profile, &sigma[..], &weight[..]);
+    let known = (&profile, &sigma[..], &weight[..]);
     turn_lagging(batch, known, farthest, h, &mut sheets, execution)?;
+    drop((profile, weight));
     let variance = |brick: usize| f64::from(sigma[brick] * sigma[brick]);
     unshrink(batch, variance, &mut sheets, h, execution)?;
     Ok(sheets)
@@ -99,10 +110,8 @@ fn find(
     (sheets, weight): (&mut [Sheet], &mut [f32]),
     execution: &mut Execution,
 ) -> Result<()> {
-    let bricks = batch.part_of_brick.len();
     let border = |brick: usize| Border::near(batch, brick, distance, REACH * sigma[brick], h);
-    let mut tensors = zeros(bricks * ENTRIES * BRICK)?;
-    execution.fill(&mut tensors, ENTRIES * BRICK, |brick, out| {
+    let make = |brick: usize, tensors: &mut [f32]| {
         let own = &distance[brick * BRICK..][..BRICK];
         if !wanted[brick] || own.iter().all(|d| *d == 0.0) {
             return;
@@ -113,23 +122,22 @@ fn find(
             || {
                 let wanted = |row: usize| row_of(own, row).iter().any(|d| *d > 0.0);
                 let derivatives = profile.derivatives(batch, brick, wanted, h);
-                find_tensors(&derivatives, own, border.as_ref(), (bent, h), out);
+                find_tensors(&derivatives, own, border.as_ref(), (bent, h), tensors);
             },
         );
-    })?;
-    let tensors = smooth_tensors(batch, (sigma, wanted), tensors, h, execution)?;
-    let of_brick = |brick: usize| &tensors[brick * BRICK * ENTRIES..][..BRICK * ENTRIES];
-    execution.fill(weight, BRICK, |brick, out| {
-        if wanted[brick] && of_brick(brick).iter().any(|v| *v != 0.0) {
+    };
+    let find = |brick: usize, tensors: &[f32], sheets: &mut [Sheet], weight: &mut [f32]| {
+        if !wanted[brick] {
+            return;
+        }
+        if tensors.iter().any(|v| *v != 0.0) {
             with_widest_vectors(
                 #[inline(always)]
-                || find_weights(of_brick(brick), out),
+                || find_weights(tensors, weight),
             );
         }
-    })?;
-    execution.fill(sheets, BRICK, |brick, sheets| {
         let near = Block::gather(batch, brick, distance);
-        if !wanted[brick] || near.values.iter().all(|d| *d == 0.0) {
+        if near.values.iter().all(|d| *d == 0.0) {
             return;
         }
         with_widest_vectors(
@@ -139,13 +147,7 @@ fn find(
                 let wanted = |row: usize| row_of(&near, row).iter().any(|d| *d > 0.0);
                 let derivatives = profile.derivatives(batch, brick, wanted, h);
                 let label = (&distance[brick * BRICK..][..BRICK], &near[..]);
-                find_sheets(
-                    &derivatives,
-                    of_brick(brick),
-                    label,
-                    (farthest, bent, h),
-                    sheets,
-                );
+                find_sheets(&derivatives, tensors, label, (farthest, bent, h), sheets);
             },
         );
         drop_unfounded((batch, brick), distance, h, sheets);
@@ -156,7 +158,26 @@ fn find(
                 }
             }
         }
-    })
+    };
+    let (mut sheets, mut weight) = (Bricks::of(sheets)?, Bricks::of(weight)?);
+    let take = |bricks: &[u32], tensors: &[f32], execution: &Execution| {
+        let (sheets, weight) = (sheets.take(bricks)?, weight.take(bricks)?);
+        execution.in_pool(|| {
+            let tensors = tensors.par_chunks_exact(ENTRIES * BRICK);
+            let out = sheets.into_par_iter().zip(weight);
+            let all = bricks.par_iter().zip(tensors).zip(out);
+            all.for_each(|((&brick, tensors), (sheets, weight))| {
+                find(brick as usize, tensors, sheets, weight);
+            });
+        });
+        Ok(())
+    };
+    let kernels = tensor_kernels(batch, h);
+    let kernel_of = |brick: usize| {
+        let step = ((rho(sigma[brick]) / RHO_BOUNDS[0]).log2() / RHO_STEP.log2()).round();
+        wanted[brick].then(|| &kernels[step as usize])
+    };
+    smooth_in_slabs(batch, kernel_of, ENTRIES * BRICK, make, take, execution)
 }
 
 /// Mean σ of a brick's voxels that have one; 0 where none has.
@@ -357,31 +378,19 @@ pub(crate) fn rho(sigma: f32) -> f32 {
     sigma.clamp(least, most)
 }
 
-/// Smooths the tensors of the `wanted` bricks with a ρ for each that goes with its σ.
-fn smooth_tensors(
-    batch: &Batch,
-    (sigma, wanted): (&[f32], &[bool]),
-    tensors: Vec<f32>,
-    h: Vec3,
-    execution: &mut Execution,
-) -> Result<Vec<f32>> {
-    let Some(directory) = batch.directories.first() else {
-        return Ok(tensors);
-    };
+/// Kernels for the tensors, a step of ρ each.
+fn tensor_kernels(batch: &Batch, h: Vec3) -> Vec<[Kernel; 3]> {
     let [least, most] = RHO_BOUNDS;
     let steps = ((most / least).log2() / RHO_STEP.log2()).round() as i32;
-    let kernels: Vec<[Kernel; 3]> = (0..=steps)
-        .map(|step| {
-            let rho = f64::from(least * RHO_STEP.powi(step));
-            Kernel::axes(rho, 1.7 * rho, h, directory)
-        })
-        .collect();
-    let kernel_of = |brick: usize| {
-        let step = ((rho(sigma[brick]) / least).log2() / RHO_STEP.log2()).round();
-        wanted[brick].then_some(&kernels[step as usize])
+    let of_step = |step: i32, directory| {
+        let rho = f64::from(least * RHO_STEP.powi(step));
+        Kernel::axes(rho, 1.7 * rho, h, directory)
     };
-    let mut scratch = zeros(tensors.len())?;
-    smooth_some(batch, kernel_of, tensors, &mut scratch, execution)
+    // All directories have the dimensions of the volume.
+    let directory = batch.directories.first();
+    directory.map_or_else(Vec::new, |directory| {
+        (0..=steps).map(|step| of_step(step, directory)).collect()
+    })
 }
 
 /// Fills in what the tensors of a brick's voxels were smoothed from: their largest eigenvalue over the

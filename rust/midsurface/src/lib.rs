@@ -115,6 +115,7 @@ mod self_intersections;
 mod separable;
 mod settle;
 mod sheet;
+mod slabs;
 mod slice;
 mod slices;
 mod statistics;

@@ -8,13 +8,16 @@
 //! The mask is smoothed at a few levels of σ, each where it is wanted, and the logarithms'
 //! derivatives are blended between the two levels next to a voxel's own σ.
 
+use rayon::prelude::*;
+
 use crate::block::{Block, Row};
 use crate::bricks::{Batch, BRICK, EDGE, LAYER};
 use crate::error::{collected, Result};
 use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::scale::HalfThickness;
-use crate::separable::{self, smooth_some, Kernel};
+use crate::separable::Kernel;
+use crate::slabs::{smooth_in_slabs, Bricks};
 
 /// σ over the local half thickness.
 const SHARE: f32 = 0.7;
@@ -72,10 +75,8 @@ impl Profile {
         let somewhere = wanted.iter().fold(0, |bits, wanted| bits | wanted);
         execution.still(passes(somewhere, h));
         let mut levels = Vec::new();
-        let mut scratch = batch.field()?;
         for level in 0..LEVELS {
-            let mask = (distance, &mut scratch);
-            levels.push(smooth_level(batch, &wanted, level, mask, h, execution)?);
+            levels.push(smooth_level(batch, &wanted, level, distance, h, execution)?);
         }
         Ok(Self {
             levels,
@@ -204,17 +205,17 @@ fn rings(level: usize, h: Vec3) -> usize {
 fn passes(levels: u8, h: Vec3) -> usize {
     (0..LEVELS)
         .filter(|level| levels >> level & 1 == 1)
-        .map(|level| rings(level, h) + 1 + separable::PASSES)
+        .map(|level| rings(level, h) + 1)
         .sum()
 }
 
 /// The mask at one level, right in the bricks that want it and a voxel around; the mask is where
-/// `distance` is positive, and `scratch`, as long, is overwritten.
+/// `distance` is positive.
 fn smooth_level(
     batch: &Batch,
     wanted: &[u8],
     level: usize,
-    (distance, scratch): (&[f32], &mut Vec<f32>),
+    distance: &[f32],
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
@@ -233,21 +234,38 @@ fn smooth_level(
             directory.around(place).any(|b| active[b])
         })?;
     }
-    let mask = mask(batch, distance, execution)?;
     let kernel_of = |brick: usize| active[brick].then_some(&kernels[0]);
-    smooth_some(batch, kernel_of, mask, scratch, execution)
+    smooth_mask(batch, distance, kernel_of, execution)
 }
 
-/// 1 where the label is, 0 elsewhere; pages without a label stay untouched.
-pub(crate) fn mask(batch: &Batch, distance: &[f32], execution: &mut Execution) -> Result<Vec<f32>> {
-    let mut mask = batch.field()?;
-    execution.fill(&mut mask, BRICK, |brick, mask| {
-        let distance = &distance[brick * BRICK..][..BRICK];
-        if distance.iter().any(|d| *d > 0.0) {
-            for (mask, d) in mask.iter_mut().zip(distance) {
-                *mask = f32::from(*d > 0.0);
-            }
+/// The mask, 1 where `distance` is positive and 0 elsewhere, smoothed with a kernel for each brick; 0 in
+/// bricks without one.
+pub(crate) fn smooth_mask<'k>(
+    batch: &Batch,
+    distance: &[f32],
+    kernel_of: impl Fn(usize) -> Option<&'k [Kernel; 3]> + Sync,
+    execution: &mut Execution,
+) -> Result<Vec<f32>> {
+    let make = |brick: usize, mask: &mut [f32]| {
+        for (mask, d) in mask.iter_mut().zip(&distance[brick * BRICK..]) {
+            *mask = f32::from(*d > 0.0);
         }
-    })?;
-    Ok(mask)
+    };
+    let mut smoothed = batch.field()?;
+    let mut out = Bricks::of(&mut smoothed)?;
+    let take = |bricks: &[u32], values: &[f32], execution: &Execution| {
+        let out = out.take(bricks)?;
+        execution.in_pool(|| {
+            let both = out.into_par_iter().zip(values.par_chunks_exact(BRICK));
+            both.for_each(|(out, values)| {
+                // Pages where there is nothing stay untouched.
+                if values.iter().any(|v| *v != 0.0) {
+                    out.copy_from_slice(values);
+                }
+            });
+        });
+        Ok(())
+    };
+    smooth_in_slabs(batch, kernel_of, BRICK, make, take, execution)?;
+    Ok(smoothed)
 }

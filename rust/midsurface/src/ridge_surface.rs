@@ -241,8 +241,7 @@ pub(crate) fn find_sheets(label: &Label, execution: &mut Execution) -> Result<Ve
     execution.stage("Finding sheets", 0.04, 0.21, passes)?;
     let far = FARTHEST * h.iter().copied().fold(1.0, f64::max);
     let farthest = far as f32;
-    let mut sheets = core_sheets(batch, &profile, distance, farthest, h, execution)?;
-    drop(profile);
+    let mut sheets = core_sheets(batch, profile, distance, farthest, h, execution)?;
     add_cut_sheets(label, far, &mut sheets, execution)?;
     execution.stage(
         "Extending sheets",

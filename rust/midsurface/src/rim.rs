@@ -9,9 +9,9 @@ use crate::bricks::{Batch, BRICK};
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
-use crate::profile::mask;
+use crate::profile::smooth_mask;
 use crate::scale::{self, BrickMeans};
-use crate::separable::{self, smooth_some, Kernel};
+use crate::separable::Kernel;
 use crate::sheet::{voxel_along, Sheet};
 
 /// σ of the smoothing, work units.
@@ -24,7 +24,7 @@ const CLOSE: f32 = 0.5;
 const LONGER: f32 = 0.65;
 
 /// Passes over all bricks that [`sheet_fraction`] makes, for its progress.
-pub(crate) const PASSES: usize = 2 + separable::PASSES + scale::PASSES;
+pub(crate) const PASSES: usize = 2 + scale::PASSES;
 
 /// The sheet fraction at every voxel of a batch; 0 where no sheet is near.
 pub(crate) fn sheet_fraction(
@@ -46,13 +46,9 @@ pub(crate) fn smoothed_mask(
     h: Vec3,
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
-    let mask = mask(batch, distance, execution)?;
-    let Some(directory) = batch.directories.first() else {
-        return Ok(mask);
-    };
-    let kernels = Kernel::repeating(SIGMA, REACH * SIGMA, h, directory);
-    let mut scratch = batch.field()?;
-    smooth_some(batch, |_| Some(&kernels), mask, &mut scratch, execution)
+    let kernels = batch.directories.first();
+    let kernels = kernels.map(|first| Kernel::repeating(SIGMA, REACH * SIGMA, h, first));
+    smooth_mask(batch, distance, |_| kernels.as_ref(), execution)
 }
 
 /// What the `smoothed` mask is midway through the sheet around a voxel.

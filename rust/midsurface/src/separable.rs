@@ -11,6 +11,8 @@ use crate::vectors::with_widest_vectors;
 
 /// Passes over all bricks that a filter makes, for its progress.
 pub(crate) const PASSES: usize = 3;
+/// The axes along which a filter goes, one after the other.
+pub(crate) const AXES: [usize; PASSES] = [2, 1, 0];
 
 /// Gaussian weights along one axis, for every place it can have to the borders of the volume.
 ///
@@ -74,6 +76,11 @@ impl Kernel {
         std::array::from_fn(|a| Self::new(sigma, reach, h[a], directory.dimensions[a]))
     }
 
+    /// Bricks that the kernel reaches into on either side.
+    pub fn reach(&self) -> usize {
+        self.radius.div_ceil(EDGE)
+    }
+
     /// Variance of the kernel in work units squared, h being the spacing it was made for.
     pub fn variance(&self, h: f64) -> f64 {
         let square =
@@ -132,19 +139,50 @@ pub(crate) fn smooth(
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
     let kernel_of = |brick: usize| Some(&kernels[batch.part_of_brick[brick] as usize]);
-    smooth_some(batch, kernel_of, field, scratch, execution)
+    filter(batch, kernel_of, Kernel::at, add, field, scratch, execution)
 }
 
-/// Smooths `field` with a kernel for each brick; bricks without one become zero.
-pub(crate) fn smooth_some<'k>(
-    batch: &Batch,
-    kernel_of: impl Fn(usize) -> Option<&'k [Kernel; 3]> + Sync,
-    field: Vec<f32>,
-    scratch: &mut Vec<f32>,
-    execution: &mut Execution,
-) -> Result<Vec<f32>> {
-    let add = |sum: f32, value: f32, weight: f32| sum + weight * value;
-    filter(batch, kernel_of, Kernel::at, add, field, scratch, execution)
+/// What smoothing adds of a value.
+#[inline(always)]
+fn add(sum: f32, value: f32, weight: f32) -> f32 {
+    sum + weight * value
+}
+
+/// Smooths a brick along an axis, given the values of the bricks around; without kernels it becomes zero.
+pub(crate) fn smooth_brick<'f>(
+    (batch, brick): (&Batch, usize),
+    kernels: Option<&'f [Kernel; 3]>,
+    axis: usize,
+    values_of: impl Fn(usize) -> &'f [f32],
+    out: &mut [f32],
+) {
+    match kernels {
+        Some(kernels) => {
+            let weights = |i: usize| kernels[axis].at(i);
+            filter_brick((batch, brick), axis, weights, add, values_of, out);
+        }
+        None => out.fill(0.0),
+    }
+}
+
+/// Filters a brick along an axis, whose weights at an index are given.
+fn filter_brick<'f>(
+    (batch, brick): (&Batch, usize),
+    axis: usize,
+    weights: impl Fn(usize) -> &'f [f32],
+    combine: impl Fn(f32, f32, f32) -> f32 + Copy,
+    values_of: impl Fn(usize) -> &'f [f32],
+    out: &mut [f32],
+) {
+    let (directory, place) = batch.brick(brick);
+    let weights: [&[f32]; EDGE] = std::array::from_fn(|k| weights(place[axis] * EDGE + k));
+    with_widest_vectors(
+        #[inline(always)]
+        || {
+            let input = Neighbours::new(directory, place, axis, weights, &values_of);
+            input.filter(axis, combine, out);
+        },
+    );
 }
 
 /// The largest value within the kernels' radius, along all axes; at least 0. `scratch`, as long as
@@ -181,7 +219,7 @@ fn filter<'k>(
     execution: &mut Execution,
 ) -> Result<Vec<f32>> {
     let size = field.len() / batch.part_of_brick.len().max(1);
-    for axis in [2, 1, 0] {
+    for axis in AXES {
         execution.fill(scratch, size, |brick, out| {
             let Some(kernel) = kernel_of(brick).map(|kernels| &kernels[axis]) else {
                 // Writing zeros over zeros would make memory of pages that nobody has touched.
@@ -190,16 +228,9 @@ fn filter<'k>(
                 }
                 return;
             };
-            let (directory, place) = batch.brick(brick);
-            let weights: [&[f32]; EDGE] =
-                std::array::from_fn(|k| weights(kernel, place[axis] * EDGE + k));
-            with_widest_vectors(
-                #[inline(always)]
-                || {
-                    let input = Neighbours::new(directory, place, axis, weights, &field, size);
-                    input.filter(axis, combine, out);
-                },
-            );
+            let weights = |i: usize| weights(kernel, i);
+            let values_of = |brick: usize| &field[brick * size..][..size];
+            filter_brick((batch, brick), axis, weights, combine, values_of, out);
         })?;
         std::mem::swap(&mut field, scratch);
     }
@@ -240,15 +271,14 @@ impl<'a> Neighbours<'a> {
         place: [usize; 3],
         axis: usize,
         weights: [&'a [f32]; EDGE],
-        field: &'a [f32],
-        size: usize,
+        values_of: impl Fn(usize) -> &'a [f32],
     ) -> Self {
         let radius = weights[0].len() / 2;
         let reach = radius.div_ceil(EDGE);
         let brick = |i: usize| {
             let mut at = place;
             at[axis] = (at[axis] + i).checked_sub(reach)?;
-            let values = &field[directory.brick(at)? * size..][..size];
+            let values = values_of(directory.brick(at)?);
             let is_zero = |values: &[f32]| values.iter().fold(true, |zero, v| zero & (*v == 0.0));
             (!values.chunks_exact(LAYER).all(is_zero)).then_some(values)
         };
