@@ -37,6 +37,8 @@ const LEAST: f32 = 1e-4;
 /// The smoothed mask at every level.
 pub(crate) struct Profile {
     levels: Vec<Vec<f32>>,
+    /// The levels wanted in each brick, a bit each.
+    wanted: Vec<u8>,
     half_thickness: HalfThickness,
 }
 
@@ -70,7 +72,10 @@ impl Profile {
             if near.values.iter().all(|d| *d == 0.0) {
                 return 0u8;
             }
-            levels_of(&half_thickness.brick(batch, brick).map(level))
+            let half = half_thickness.brick(batch, brick);
+            let voxels = half.iter().zip(near.largest_near());
+            let near = voxels.filter(|(_, near)| *near > 0.0);
+            near.fold(0, |bits, (half, _)| bits | levels_of(level(*half)))
         })?;
         let somewhere = wanted.iter().fold(0, |bits, wanted| bits | wanted);
         execution.still(passes(somewhere, h));
@@ -80,6 +85,7 @@ impl Profile {
         }
         Ok(Self {
             levels,
+            wanted,
             half_thickness,
         })
     }
@@ -90,7 +96,7 @@ impl Profile {
         self.half_thickness.brick(batch, brick).map(sigma)
     }
 
-    /// The derivatives in the `wanted` rows of a brick.
+    /// The derivatives in the `wanted` rows of a brick, right at voxels in or beside the label.
     #[inline(always)]
     pub fn derivatives(
         &self,
@@ -104,9 +110,8 @@ impl Profile {
             .filter(|&row| wanted(row))
             .map(|row| Derivatives::new(row, std::array::from_fn(|i| half[row * EDGE + i])))
             .collect();
-        let levels = rows
-            .iter()
-            .fold(0, |bits, row| bits | levels_of(&row.level));
+        let levels = rows.iter().flat_map(|row| row.level);
+        let levels = levels.fold(0, |bits, level| bits | levels_of(level)) & self.wanted[brick];
         for level in (0..LEVELS).filter(|level| levels >> level & 1 == 1) {
             let block = Block::smooth(batch, brick, &self.levels[level]);
             for row in &mut rows {
@@ -187,11 +192,9 @@ fn sigma(level: f32) -> f32 {
     FIRST * RATIO.powf(level)
 }
 
-/// The levels that voxels blend, a bit each.
-fn levels_of(coordinates: &[f32]) -> u8 {
-    coordinates.iter().fold(0, |bits, c| {
-        bits | 1 << c.floor() as u8 | 1 << c.ceil() as u8
-    })
+/// The levels that a voxel blends, a bit each.
+fn levels_of(level: f32) -> u8 {
+    1 << level.floor() as u8 | 1 << level.ceil() as u8
 }
 
 /// Rings of bricks that a level's filter reaches into.
