@@ -6,8 +6,6 @@
 //! triangles whose centres are in the place. So two places that see the same of each other agree on what is
 //! at the border between them. What a process lacks for its boxes the others send it.
 
-use std::cmp::Ordering;
-
 use rayon::prelude::*;
 
 use crate::error::{collected, extend, filled, push, zeros, Error, Result};
@@ -16,6 +14,7 @@ use crate::execution::Execution;
 use crate::grid::Vec3;
 use crate::halfedge::NONE;
 use crate::manifold::Surface;
+use crate::seams::{along_axes, Point};
 use crate::tiles::Place;
 
 /// The lower and the upper corner of a box.
@@ -183,12 +182,15 @@ fn joined(surfaces: impl IntoIterator<Item = Surface>, execution: &Execution) ->
         let triangles = surface.triangles.iter().map(|t| t.map(|p| first + p));
         extend(&mut all.triangles, triangles)?;
     }
-    let key = |p: u32| order_of(all.source[p as usize], all.points[p as usize]);
+    let compare = |a: u32, b: u32| {
+        let [a, b] = [a, b].map(|p| Point::of(&all, p as usize));
+        a.order(&b)
+    };
     let mut order = collected(0..all.points.len() as u32)?;
-    execution.in_pool(|| order.par_sort_unstable_by(|&a, &b| key(a).cmp(&key(b))));
+    execution.in_pool(|| order.par_sort_unstable_by(|&a, &b| compare(a, b)));
     let mut number: Vec<u32> = zeros(order.len())?;
     let (mut points, mut source) = (Vec::new(), Vec::new());
-    for same in order.chunk_by(|&a, &b| key(a) == key(b)) {
+    for same in order.chunk_by(|&a, &b| compare(a, b).is_eq()) {
         same.iter()
             .for_each(|&p| number[p as usize] = points.len() as u32);
         push(&mut points, all.points[same[0] as usize])?;
@@ -204,26 +206,14 @@ fn joined(surfaces: impl IntoIterator<Item = Surface>, execution: &Execution) ->
     Ok(all)
 }
 
-/// The number of a point, told by its part and place, in a surface that was gathered.
-pub(crate) fn number(gathered: &Surface, part: u32, place: Vec3) -> Option<usize> {
-    let wanted = order_of(part, place);
-    let (mut from, mut to) = (0, gathered.points.len());
-    while from < to {
-        let middle = from.midpoint(to);
-        let key = order_of(gathered.source[middle], gathered.points[middle]);
-        match key.cmp(&wanted) {
-            Ordering::Less => from = middle + 1,
-            Ordering::Equal => return Some(middle),
-            Ordering::Greater => to = middle,
-        }
-    }
-    None
-}
-
-/// What orders points by part and place, to the bit.
-fn order_of(part: u32, place: Vec3) -> (u32, u64, u64, u64) {
-    let [x, y, z] = place.map(f64::to_bits);
-    (part, z, y, x)
+/// The number of a point in a surface that was gathered.
+pub(crate) fn number(gathered: &Surface, point: Point) -> Option<usize> {
+    let Surface { points, source, .. } = gathered;
+    let first = source.partition_point(|&part| part < point.part);
+    let end = source.partition_point(|&part| part <= point.part);
+    let of_part = &points[first..end];
+    let found = of_part.binary_search_by(|p| along_axes(p, &point.place));
+    found.ok().map(|at| first + at)
 }
 
 fn is_within([low, high]: Corners, p: Vec3) -> bool {
@@ -262,10 +252,18 @@ mod tests {
         assert_eq!(again.points, both.points);
         assert_eq!(again.triangles, both.triangles);
         for (p, place) in both.points.iter().enumerate() {
-            assert_eq!(number(&both, 0, *place), Some(p));
-            assert_eq!(number(&both, 1, *place), None);
+            let point = |part| Point {
+                part,
+                place: *place,
+            };
+            assert_eq!(number(&both, point(0)), Some(p));
+            assert_eq!(number(&both, point(1)), None);
         }
-        assert_eq!(number(&both, 0, [0.5; 3]), None);
+        let elsewhere = Point {
+            part: 0,
+            place: [0.5; 3],
+        };
+        assert_eq!(number(&both, elsewhere), None);
     }
 
     #[test]

@@ -57,12 +57,17 @@ impl Point {
         }
     }
 
-    /// Orders points, to the bit, so that those near each other along x are.
-    fn order(&self, other: &Self) -> Ordering {
-        let along = self.place.iter().zip(&other.place);
-        let along = along.map(|(a, b)| a.total_cmp(b));
-        along.fold(self.part.cmp(&other.part), Ordering::then)
+    /// Orders points by part and place, to the bit.
+    pub fn order(&self, other: &Self) -> Ordering {
+        let by_part = self.part.cmp(&other.part);
+        by_part.then_with(|| along_axes(&self.place, &other.place))
     }
+}
+
+/// Orders places along x, then y, then z.
+pub(crate) fn along_axes(a: &Vec3, b: &Vec3) -> Ordering {
+    let along = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
+    along.fold(Ordering::Equal, Ordering::then)
 }
 
 /// Half an edge on a seam.

@@ -266,9 +266,7 @@ impl<'a> Component<'a> {
             let around = gathered(pieces.iter().chain(&others), boxes[own], execution)?;
             let near = self.tiles[own].near.grown(MOVE_REACH);
             let moved = self.stages.moved(&around, &near, execution)?;
-            let to = |Point { part, place }: Point| {
-                number(&around, part, place).map_or(place, |p| moved[p])
-            };
+            let to = |point: Point| number(&around, point).map_or(point.place, |p| moved[p]);
             let surface = &pieces[i].surface;
             let mut of_piece: Vec<Vec3> = zeros(surface.points.len())?;
             execution.in_pool(|| {
