@@ -8,7 +8,7 @@
 
 use rayon::prelude::*;
 
-use crate::error::{collected, extend, filled, push, zeros, Error, Result};
+use crate::error::{collected, extend, filled, push, reserved, zeros, Error, Result};
 use crate::exchange::Team;
 use crate::execution::Execution;
 use crate::grid::Vec3;
@@ -157,18 +157,23 @@ pub(crate) fn chosen(
 /// The triangles of a surface that stay, in their order, with their points.
 pub(crate) fn kept(surface: &Surface, stays: &[bool]) -> Result<Surface> {
     let mut number = filled(NONE, surface.points.len())?;
-    let mut kept = Surface::default();
+    let mut used = Vec::new();
+    // Pieces are kept for long: with as much room as they need.
+    let mut triangles = reserved(stays.iter().filter(|stays| **stays).count())?;
     for (triangle, _) in surface.triangles.iter().zip(stays).filter(|(_, s)| **s) {
-        for p in triangle.map(|p| p as usize) {
-            if number[p] == NONE {
-                number[p] = kept.points.len() as u32;
-                push(&mut kept.points, surface.points[p])?;
-                push(&mut kept.source, surface.source[p])?;
+        for &p in triangle {
+            if number[p as usize] == NONE {
+                number[p as usize] = used.len() as u32;
+                push(&mut used, p as usize)?;
             }
         }
-        push(&mut kept.triangles, triangle.map(|p| number[p as usize]))?;
+        triangles.push(triangle.map(|p| number[p as usize]));
     }
-    Ok(kept)
+    Ok(Surface {
+        points: collected(used.iter().map(|&p| surface.points[p]))?,
+        source: collected(used.iter().map(|&p| surface.source[p]))?,
+        triangles,
+    })
 }
 
 /// Several surfaces as one, in which points that are the same to the bit are one. Points are numbered by
@@ -216,7 +221,7 @@ pub(crate) fn number(gathered: &Surface, point: Point) -> Option<usize> {
     found.ok().map(|at| first + at)
 }
 
-fn is_within([low, high]: Corners, p: Vec3) -> bool {
+pub(crate) fn is_within([low, high]: Corners, p: Vec3) -> bool {
     (0..3).all(|a| low[a] <= p[a] && p[a] <= high[a])
 }
 

@@ -169,6 +169,7 @@ impl<'a> Stages<'a> {
                 let mut within = surface.copied()?;
                 keep_within(self.grid, &mut within.points);
                 let fraction = values(batch, &within, around.fraction, h, execution)?;
+                drop(within);
                 let fans = Fans::new(&surface.triangles, surface.points.len())?;
                 move_midway(&around.label, &mut surface, &fraction, &fans, execution)?;
                 Ok(surface)

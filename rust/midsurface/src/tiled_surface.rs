@@ -27,7 +27,9 @@ use crate::exchange::Team;
 use crate::execution::Execution;
 use crate::grid::{Grid, Vec3};
 use crate::manifold::Surface;
-use crate::mosaic::{centre, gathered, kept, number, received, wanted, Corners, Piece};
+use crate::mosaic::{
+    centre, chosen, gathered, is_within, kept, number, received, wanted, Corners, Piece,
+};
 use crate::remesh::Before;
 use crate::seams::{agree, moved_alike, Patches, Point};
 use crate::tile::{BrickSums, Stages, FINISH_BEGINS};
@@ -55,6 +57,9 @@ const ROUNDS_END: [f64; 4] = [0.65, 0.85, 0.91, 0.93];
 /// About how many passes a step between these makes.
 const MIDWAY_PASSES: usize = 40;
 
+/// The pieces of the own tiles, and of each the points that other tiles have, too.
+type Made = (Vec<Piece>, Vec<Vec<Point>>);
+
 /// The own tiles of the surface of a component. Edges are `edge_length` world units long, 0:
 /// the default. `None` where the tiles of all processes do not make up a surface.
 pub(crate) fn tiled_surface(
@@ -79,10 +84,10 @@ pub(crate) fn tiled_surface(
         team,
         execution,
     )?;
-    let Some((pieces, patches)) = cut else {
+    let Some((pieces, shared)) = cut else {
         return Ok(None);
     };
-    let pieces = component.moved(pieces, &patches, team, execution)?;
+    let pieces = component.moved(pieces, &shared, team, execution)?;
     let share = [MOVE_ENDS, ROUNDS_END[0]];
     let led_on = component.step(pieces, (LEAD_REACH, share), Stages::led_on, team, execution)?;
     let Some((mut pieces, _)) = led_on else {
@@ -204,8 +209,8 @@ impl<'a> Component<'a> {
         Ok(Some(pieces))
     }
 
-    /// What `work` makes of the surface around each own tile, as far as this reaches; `None` where the
-    /// tiles of all do not make up a surface.
+    /// What `work` makes of the surface around each own tile, as far as this reaches, given the pieces of
+    /// these; `None` where the tiles of all do not make up a surface.
     fn step(
         &self,
         mut pieces: Vec<Piece>,
@@ -213,7 +218,7 @@ impl<'a> Component<'a> {
         work: impl Fn(&Stages<'a>, Surface, &VoxelBox, &mut Execution) -> Result<Surface>,
         team: &mut Team,
         execution: &mut Execution,
-    ) -> Result<Option<(Vec<Piece>, Vec<Patches>)>> {
+    ) -> Result<Option<Made>> {
         let boxes = self.boxes(reach as f64)?;
         let others = self.received(&pieces, &boxes, team, execution)?;
         extend(&mut pieces, others)?;
@@ -223,13 +228,18 @@ impl<'a> Component<'a> {
             self.take_progress(i, share, share, execution);
             execution.stage("Moving midway", share[0], share[1], MIDWAY_PASSES)?;
             let around = gathered(&pieces, boxes[own], execution)?;
+            // From now on the tile's piece is wanted around later ones only.
+            let later = &self.own[i + 1..];
+            let is_wanted = |p: Vec3| later.iter().any(|&tile| is_within(boxes[tile], p));
+            pieces[i].surface = chosen(&pieces[i].surface, is_wanted, execution)?;
             let surface = work(&self.stages, around, &tile.near.grown(reach), execution)?;
             let (piece, of_tile) = self.piece(tile, &surface, execution)?;
             push(&mut made, piece)?;
             push(&mut patches, of_tile)?;
         }
         let agreed = agree(&self.own, &patches, team)?.filter(|agreed| agreed.is_wound);
-        Ok(agreed.map(|_| (made, patches)))
+        let shared = collected(patches.into_iter().map(|patches| patches.shared))?;
+        Ok(agreed.map(|_| (made, shared)))
     }
 
     /// What other processes have in the boxes of the own tiles.
@@ -252,7 +262,7 @@ impl<'a> Component<'a> {
     fn moved(
         &self,
         mut pieces: Vec<Piece>,
-        patches: &[Patches],
+        points: &[Vec<Point>],
         team: &mut Team,
         execution: &mut Execution,
     ) -> Result<Vec<Piece>> {
@@ -274,7 +284,7 @@ impl<'a> Component<'a> {
                 all.for_each(|(p, place)| *place = to(Point::of(surface, p)));
             });
             push(&mut places, of_piece)?;
-            let of_shared = patches[i].shared.iter().map(|&point| (point, to(point)));
+            let of_shared = points[i].iter().map(|&point| (point, to(point)));
             push(&mut shared, (own, collected(of_shared)?))?;
         }
         let moves = moved_alike(&shared, team)?;

@@ -11,7 +11,6 @@ use crate::lots::Sizes;
 use crate::mask::Mask;
 use crate::mesh::Mesh;
 use crate::midway::Label;
-use crate::mosaic::chosen;
 use crate::reading::read_parts;
 use crate::ridge_surface::{find_sheets, ridge_surface};
 use crate::statistics::{statistics, Statistics, TriangleMesh};
