@@ -54,6 +54,12 @@ void fuzz_polylines(const uint8_t* data, size_t size)
   arrays.slices = lines;
   arrays.labels = flags & 2 ? lines + arrays.line_count : NULL;
   arrays.components = flags & 4 ? lines + 2 * arrays.line_count : NULL;
+  double* voxel_steps = buffer_of(9, sizeof *voxel_steps);
+  for (size_t index = 0; index < 9; index++)
+  {
+    voxel_steps[index] = take_number(&input);
+  }
+  arrays.voxel_steps = flags & 64 ? voxel_steps : NULL;
 
   midsurface_polylines* polylines = NULL;
   midsurface_error* error = NULL;
@@ -76,4 +82,5 @@ void fuzz_polylines(const uint8_t* data, size_t size)
   free(offsets);
   free(connectivity);
   free(lines);
+  free(voxel_steps);
 }
