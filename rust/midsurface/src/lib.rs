@@ -20,7 +20,7 @@
 //! | contour | sheets → a surface through them, cut at the label's rims | `contour.rs`, `rim.rs`, `trim.rs`, `scraps.rs` |
 //! | holes | surface → surface without creases where sheets meet, nor false holes, led on beyond the border of the volume for the while | `creases.rs`, `holes.rs`, `beyond.rs` |
 //! | midway | surface → surface midway between both faces, led on to where sheets meet | `midway.rs`, `look.rs`, `fairing.rs`, `reach.rs` |
-//! | mesh | triangles → nearly equilateral ones, no terraces, no self-intersections | `remesh`, `terraces.rs`, `self_intersections.rs` |
+//! | mesh | triangles → nearly equilateral ones, no terraces, no self-intersections | `remesh`, `terraces.rs`, `sharp.rs`, `self_intersections.rs` |
 //!
 //! The polyline zipper is the method of Boneš et al., "MidSurfer: A Parameter-Free Approach for
 //! Mid-Surface Extraction from Segmented Volumetric Data" (arXiv 2405.19339):
@@ -114,6 +114,7 @@ mod seams;
 mod self_intersections;
 mod separable;
 mod settle;
+mod sharp;
 mod sheet;
 mod slabs;
 mod slice;

@@ -42,6 +42,8 @@ use crate::halfedge::ends;
 use blocks::{Blocks, Surface};
 use patch::{Kind, Patch, Vertex};
 use reference::{Place, Reference};
+pub(crate) use repair::SHARP;
+pub(crate) use shape::sine_of_smallest_angle;
 use subdivide::subdivide;
 
 /// A remeshed surface.

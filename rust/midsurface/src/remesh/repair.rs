@@ -27,7 +27,7 @@ use crate::halfedge::{next, previous, NONE};
 const RINGS: u8 = 3;
 /// A triangle whose smallest angle is below this sine's (30°) is a fault. Above it no angle is
 /// over 120°.
-const SHARP: f64 = 0.5;
+pub(crate) const SHARP: f64 = 0.5;
 /// What such a triangle costs, and each unit of sine that it lacks; a point with an odd number of
 /// edges costs 1.
 const SHARP_COST: f64 = 0.5;

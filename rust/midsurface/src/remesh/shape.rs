@@ -21,7 +21,7 @@ pub(super) fn squared_sine([a, b, c]: [Vec3; 3]) -> f64 {
 }
 
 /// Sine of a triangle's smallest angle; 0 where it has no area.
-pub(super) fn sine_of_smallest_angle(corners: [Vec3; 3]) -> f64 {
+pub(crate) fn sine_of_smallest_angle(corners: [Vec3; 3]) -> f64 {
     squared_sine(corners).sqrt()
 }
 
