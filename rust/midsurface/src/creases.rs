@@ -17,11 +17,11 @@ use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, length, sub, unit, Vec3};
 use crate::halfedge::{ends, Fans, NONE};
-use crate::holes::{blind, is_within, remove};
+use crate::holes::{blind, fraction_at, remove};
 use crate::manifold::Surface;
 use crate::midway::Label;
 use crate::normals::normal_of_fan;
-use crate::reach::away;
+use crate::reach::{away, WITHIN};
 use crate::region::Region;
 
 /// Rings of points around blind rims that are looked at.
@@ -54,11 +54,11 @@ pub(crate) fn cut_creases(
     execution: &mut Execution,
 ) -> Result<Fans> {
     let fans = Fans::new(&surface.triangles, surface.points.len())?;
-    let is_blind = blind(label, surface, &fans, fraction, execution)?;
+    let is_blind = blind(label, surface, &fans, (fraction, WITHIN), execution)?;
     let numbers = 0..surface.points.len() as u32;
     let blind = collected(numbers.filter(|&p| is_blind[p as usize]))?;
     let mut creases = creases(surface, &fans, &blind)?;
-    creases.retain(|seed| is_within(label, surface, fraction, seed.point));
+    creases.retain(|seed| fraction_at(label, surface, fraction, seed.point) >= WITHIN);
     if creases.is_empty() {
         return Ok(fans);
     }

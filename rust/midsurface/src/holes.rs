@@ -3,7 +3,7 @@
 //! Where sheets meet, voxels know of several, and where neighbours settle on different ones the
 //! contour of the sheet that goes through has holes; of two that go through each other each has
 //! holes where the other passes. A hole of the label has a rim where the sheet fraction (`rim.rs`) is
-//! ½; where it is about 1 all around, and the label is there all over, there is none, and the
+//! ½; where it is more all around, and the label is there all over, there is none, and the
 //! surface is closed: by the triangles between the points of the hole's rim whose edges are shortest
 //! (dynamic programming, as in Liepa 2003, "Filling holes in meshes"). What passes through the hole
 //! across is cut away, smaller holes first, so that in the end one of the two sheets goes through
@@ -24,10 +24,13 @@ use crate::interpolation::Sampler;
 use crate::manifold::{split_points_among, Surface};
 use crate::midway::Label;
 use crate::normals::normal_of_fan;
-use crate::reach::WITHIN;
 use crate::scraps::drop_scraps;
 use crate::touching::{touch, TOUCHING};
 
+/// The sheet fraction is at least this all along a rim that the label has no part in: it is ½ along one of
+/// the label's. Beside such a one neighbours may settle on different sheets, too, where the label ends
+/// askew or bends over.
+const UNCUT: f64 = 0.6;
 /// Points of a hole's rim at most, and the longest edge across it, work units.
 const MOST: usize = 256;
 const WIDEST: f64 = 8.0;
@@ -77,12 +80,13 @@ struct Patch {
     triangles: Vec<[u32; 3]>,
 }
 
-/// Whether each point is on a rim that is none of the label's, nor on the border of the volume.
+/// Whether each point is on a rim that is none of the label's, nor on the border of the volume: the sheet
+/// fraction is `least` there.
 pub(crate) fn blind(
     label: &Label,
     surface: &Surface,
     fans: &Fans,
-    fraction: &[f32],
+    (fraction, least): (&[f32], f64),
     execution: &mut Execution,
 ) -> Result<Vec<bool>> {
     let mut is_blind: Vec<bool> = zeros(surface.points.len())?;
@@ -90,21 +94,21 @@ pub(crate) fn blind(
         for (i, is_blind) in out.iter_mut().enumerate() {
             let p = (PIECE * piece + i) as u32;
             *is_blind = fans.is_boundary(&surface.triangles, p)
-                && is_within(label, surface, fraction, p)
+                && fraction_at(label, surface, fraction, p) >= least
                 && !label.on_border(surface.points[p as usize]).contains(&true);
         }
     })?;
     Ok(is_blind)
 }
 
-/// Whether a point of the surface is well within its sheet, given the sheet fraction at the voxels.
-pub(crate) fn is_within(label: &Label, surface: &Surface, fraction: &[f32], p: u32) -> bool {
+/// The sheet fraction at a point of the surface, given that at the voxels.
+pub(crate) fn fraction_at(label: &Label, surface: &Surface, fraction: &[f32], p: u32) -> f64 {
     let sampler = Sampler {
         directory: &label.batch.directories[surface.source[p as usize] as usize],
         field: fraction,
         h: label.h,
     };
-    sampler.linear(surface.points[p as usize]) >= WITHIN
+    sampler.linear(surface.points[p as usize])
 }
 
 /// The rims of holes within the label, each as its points in the order of the boundary's half-edges,
@@ -116,7 +120,7 @@ fn holes(
     fraction: &[f32],
     execution: &mut Execution,
 ) -> Result<Vec<Vec<u32>>> {
-    let mut is_blind = blind(label, surface, fans, fraction, execution)?;
+    let mut is_blind = blind(label, surface, fans, (fraction, UNCUT), execution)?;
     let after = |p: u32| {
         let mut leaving = fans.of(p).iter().copied();
         let on_rim = leaving.find(|&e| fans.twin(&surface.triangles, e) == NONE)?;
