@@ -24,7 +24,7 @@ use crate::vectors::with_widest_vectors;
 const FARTHEST: f32 = 1.5;
 /// A normal stays where turning it would move the middle by less than this a way of ρ off, work units:
 /// the bends of thin sheets are known no better.
-const LEAST: f32 = 0.25;
+const LEAST: f32 = 0.1;
 
 /// Passes over all bricks that [`turn_lagging`] makes, for its progress.
 pub(crate) const PASSES: usize = bending::PASSES + 1;
