@@ -1,10 +1,10 @@
 //! Real segmentations, where they lie beside the checkout in ../shared/data: how the surface lies
-//! within its label, by the definitions of `phantoms::mask_fit`.
+//! within its label, by the definitions of `phantoms::mask_fit`, and what its triangles look like.
 
 use std::path::Path;
 
 use midsurface::Grid;
-use phantoms::{mask_fit, self_intersections, Frame};
+use phantoms::{mask_fit, self_intersections, shapes, Frame};
 
 use crate::{image_file, ridge_surface};
 
@@ -17,6 +17,9 @@ struct Limits {
 
 /// Share of the mesh's area outside the label grown by one voxel, at most.
 const EXCESS: f64 = 0.0005;
+
+/// No angle of a triangle is smaller, degrees.
+const LEAST_ANGLE: f64 = 25.0;
 
 /// Smaller components of a label are left out.
 const SPECK: usize = 30;
@@ -61,6 +64,10 @@ fn check(name: &str, limits: &Limits) {
         crossings.is_empty(),
         format!("{} self-intersections", crossings.len()),
     );
+    let corner = |p: u32| mesh.points[p as usize].map(f64::from);
+    let triangles: Vec<_> = mesh.triangles.iter().map(|t| t.map(corner)).collect();
+    let least = shapes(&triangles).smallest_angle;
+    expect(least >= LEAST_ANGLE, format!("an angle of {least} degrees"));
     assert!(failures.is_empty(), "{name}: {}", failures.join(", "));
 }
 
