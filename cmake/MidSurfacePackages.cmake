@@ -63,9 +63,11 @@ set(CPACK_DEBIAN_C_PACKAGE_DEPENDS "libc6-dev")
 set(plugin_list
   "/usr/${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/midsurface.plugins.xml")
 foreach (script IN ITEMS postinst prerm)
-  configure_file("${PROJECT_SOURCE_DIR}/cmake/debian/${script}.in"
+  configure_file("${PROJECT_SOURCE_DIR}/cmake/debian/paraview/${script}.in"
     "${PROJECT_BINARY_DIR}/debian/${script}" @ONLY)
   list(APPEND CPACK_DEBIAN_PARAVIEW_PACKAGE_CONTROL_EXTRA "${PROJECT_BINARY_DIR}/debian/${script}")
+  list(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+    "${PROJECT_SOURCE_DIR}/cmake/debian/python/${script}")
 endforeach ()
 
 set(CPACK_PACKAGE_NAME midsurface)

@@ -3,6 +3,8 @@
 set -euo pipefail
 cd "$1"
 export DEBIAN_FRONTEND=noninteractive LANG=C.UTF-8
+# As for users, whose Python leaves compiled files behind.
+unset PYTHONDONTWRITEBYTECODE
 conf=/usr/bin/paraview.conf
 work=$(mktemp -d)
 
