@@ -42,7 +42,7 @@ use crate::scale::{self, HalfThickness};
 use crate::scraps::drop_scraps;
 use crate::self_intersections::{self, remove_self_intersections};
 use crate::settle::settle;
-use crate::sharp::{self, take_back};
+use crate::sharp::{self, widen_all};
 use crate::sheet::Sheet;
 use crate::terraces::{flatten_terraces, Filters, LineOfPoint, LowPass, OnBoundary, STRONG};
 use crate::trim::trim;
@@ -162,14 +162,13 @@ pub(crate) fn finish(
     drop_degenerate(&mut found, in_mesh(grid), execution)?;
     let mut found = found.compact()?;
     let fans = Fans::new(&found.triangles, found.points.len())?;
-    let before = collected(found.points.iter().copied())?;
     flatten(&mut found, &fans, (wanted, grid), execution)?;
     let rough = normals(&found.points, &found.triangles, &fans, execution)?;
     move_closer(label, &mut found, &rough, execution)?;
-    take_back(&before, &mut found, &fans, execution)?;
-    drop(before);
+    let last = label.last();
+    widen_all(&mut found, &fans, last, execution)?;
     let component = |part: u32| label.batch.parts[part as usize].component;
-    let fans = remove_self_intersections(&mut found, fans, &component, wanted, execution)?;
+    let fans = remove_self_intersections(&mut found, fans, &component, (wanted, last), execution)?;
     keep_within(grid, &mut found.points);
     if !drop_degenerate(&mut found, in_mesh(grid), execution)? {
         return Ok((found, fans));

@@ -13,10 +13,11 @@ use crate::buckets::Buckets;
 use crate::cells::{bounds, near, overlap, Cells};
 use crate::error::{collected, extend, zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, cross, dot, sub};
+use crate::grid::{along, cross, dot, sub, Vec3};
 use crate::halfedge::{Fans, NONE};
 use crate::manifold::{make_manifold, Surface};
 use crate::scraps::drop_scraps;
+use crate::sharp::widen;
 use crate::touching::{touch, TOUCHING};
 
 /// Share of the way to the points next to the rim that a rim point is drawn back in a step, and the
@@ -26,6 +27,8 @@ const STEPS: usize = 6;
 /// Times that triangles are cut away, at most: mostly once or twice, but a rim that is crumpled all along
 /// takes more.
 const CUTS: usize = 24;
+/// Rounds after which triangles that drawing back has made sharp are widened.
+const WIDENED: usize = 6;
 /// How far from a rim that is drawn back others may begin to touch, in lengths of an edge.
 const REACH: f64 = 1.5;
 /// Rings of points beside a rim whose triangles are looked at, too: what is led on to where sheets meet
@@ -46,12 +49,13 @@ pub(crate) const PASSES: usize = 2;
 
 /// Draws rims back, and cuts away what has to be, until no rim touches another triangle of its
 /// component, as far as [`CUTS`] rounds reach. `component` is that of a source of the surface's
-/// points, `edge` the length of its edges. Takes and returns the surface's fans.
+/// points, `edge` the length of its edges, `last` the last voxel of the volume, work coordinates. Takes
+/// and returns the surface's fans.
 pub(crate) fn remove_self_intersections(
     surface: &mut Surface,
     mut fans: Fans,
     component: &(impl Fn(u32) -> u32 + Sync),
-    edge: f64,
+    (edge, last): (f64, Vec3),
     execution: &mut Execution,
 ) -> Result<Fans> {
     for cut in 1..=CUTS {
@@ -64,7 +68,11 @@ pub(crate) fn remove_self_intersections(
         }
         let near = near(surface, touching.as_flattened(), REACH * edge)?;
         let rims = (&fans, on_rim.as_slice(), rings.as_slice());
-        let left = draw_back(surface, rims, &near, touching, component, execution)?;
+        let (left, pressed) = draw_back(surface, rims, &near, touching, component, execution)?;
+        // What touches after that is drawn back in the next round; the last rounds only draw back.
+        if cut <= WIDENED {
+            widen(surface, &fans, last, pressed)?;
+        }
         if left.is_empty() {
             continue;
         }
@@ -186,7 +194,8 @@ fn face_alike(surface: &Surface, triangles: [[u32; 3]; 2]) -> bool {
     cosine > 0.0 && cosine * cosine > ALIKE * ALIKE * dot(m, m) * dot(n, n)
 }
 
-/// Draws the rims of pairs that touch back; returns the pairs that touch in the end.
+/// Draws the rims of pairs that touch back; returns the pairs that touch in the end, and the triangles at
+/// the points that were drawn.
 fn draw_back(
     surface: &mut Surface,
     (fans, on_rim, rings): (&Fans, &[bool], &[Ring]),
@@ -194,7 +203,8 @@ fn draw_back(
     mut touching: Vec<[u32; 2]>,
     component: &(impl Fn(u32) -> u32 + Sync),
     execution: &mut Execution,
-) -> Result<Vec<[u32; 2]>> {
+) -> Result<(Vec<[u32; 2]>, Vec<u32>)> {
+    let mut pressed = Vec::new();
     for _ in 0..STEPS {
         let corners = touching.as_flattened().iter();
         let corners = corners.flat_map(|&t| surface.triangles[t as usize]);
@@ -202,6 +212,7 @@ fn draw_back(
         rims.sort_unstable();
         rims.dedup();
         for p in rims {
+            extend(&mut pressed, fans.of(p).iter().map(|&e| e / 3))?;
             // Inner points stay, so that the order of the rim's does not matter.
             let around = fans
                 .of(p)
@@ -222,7 +233,7 @@ fn draw_back(
             break;
         }
     }
-    Ok(touching)
+    Ok((touching, pressed))
 }
 
 /// Cuts one of each pair away, as long as they have no points in common, unless they are `all` to go.
@@ -265,7 +276,6 @@ fn cut_away(
 mod tests {
     use super::*;
     use crate::execution::Quiet;
-    use crate::grid::Vec3;
 
     /// Adds a lattice of squares with sides of 1, each cut in two.
     fn add_lattice(surface: &mut Surface, sides: [u32; 2], place: impl Fn(f64, f64) -> Vec3) {
@@ -302,8 +312,14 @@ mod tests {
         let mut quiet = Quiet::default();
         let fans = Fans::new(&surface.triangles, surface.points.len()).unwrap();
         let mut execution = Execution::new(threads, &mut quiet).unwrap();
-        remove_self_intersections(&mut surface, fans, &|source| source, 1.0, &mut execution)
-            .unwrap();
+        remove_self_intersections(
+            &mut surface,
+            fans,
+            &|source| source,
+            (1.0, [100.0; 3]),
+            &mut execution,
+        )
+        .unwrap();
         surface
     }
 

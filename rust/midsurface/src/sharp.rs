@@ -1,32 +1,41 @@
-//! Finished triangles whose points have moved → the same, none of them sharp.
+//! Finished triangles, of which a few have become sharp → the same, none of them sharp.
 //!
 //! Triangles are nearly equilateral when they are made, and what moves their points afterwards, along
-//! normals, hardly changes that. But where a sheet bends sharply, or at a rim, neighbours move different
-//! ways, and a triangle or two in ten thousand become sharp. The corners of these go back towards where
-//! they were, step by step and no farther than it takes.
+//! normals, hardly changes that. But where a sheet bends sharply neighbours move different ways, and
+//! a rim that is drawn back (`self_intersections.rs`) presses what lies behind it: a triangle or two in
+//! ten thousand become sharp. Each of their corners goes to the best of some places around it, where
+//! its triangles lack least (local optimisation of angles, as in Freitag and Ollivier-Gooch 1997,
+//! "Tetrahedral mesh improvement using swapping and smoothing").
 //!
-//! What was sharp before and has not become worse stays as it is.
+//! Points on a border of the volume stay. Where no corner can move to any gain a triangle stays sharp.
 
 use crate::error::{collected, extend, Result};
 use crate::execution::Execution;
-use crate::grid::{along, sub, Vec3};
-use crate::halfedge::Fans;
+use crate::grid::{along, dot, length, sub, Vec3};
+use crate::halfedge::{ends, Fans};
 use crate::manifold::Surface;
+use crate::normals::normal_of_fan;
 use crate::remesh::{sine_of_smallest_angle, SHARP};
 
-/// Share of the way back that points go in a step, and the most steps: hardly anything is left in the end.
-const STEP: f64 = 0.25;
-const STEPS: usize = 12;
+/// Times that corners move, at most.
+const STEPS: usize = 24;
+/// Shares of an edge that a point tries to move by.
+const SHARES: [f64; 3] = [0.25, 0.12, 0.06];
+/// A triangle whose smallest angle is this sine's (31°) lacks nothing, others the square of what is
+/// missing; this share of what its triangles lack a point has to gain.
+const ENOUGH: f64 = 0.52;
+const GAIN: f64 = 0.01;
 /// Triangles handed to a worker at a time.
 const PIECE: usize = 4096;
-/// Passes over the triangles that [`take_back`] makes where none is sharp, for its progress.
+/// Passes over the triangles that [`widen_all`] makes, for its progress.
 pub(crate) const PASSES: usize = 1;
 
-/// Takes back the moves from `before` of the points of triangles that these have made sharp.
-pub(crate) fn take_back(
-    before: &[Vec3],
+/// Makes the sharp triangles of a surface less so; `last` is the last voxel of the volume, work
+/// coordinates.
+pub(crate) fn widen_all(
     surface: &mut Surface,
     fans: &Fans,
+    last: Vec3,
     execution: &mut Execution,
 ) -> Result<()> {
     let pieces = collected(0..surface.triangles.len().div_ceil(PIECE))?;
@@ -37,40 +46,91 @@ pub(crate) fn take_back(
             let first = piece * PIECE;
             let last = surface.triangles.len().min(first + PIECE);
             let all = first as u32..last as u32;
-            collected(all.filter(|&t| is_sharpened(before, surface, t)))
+            collected(all.filter(|&t| is_sharp(surface, t)))
         },
         |found: Result<Vec<u32>>| extend(&mut sharp, found?),
     )?;
+    widen(surface, fans, last, sharp)
+}
+
+/// Makes those of some triangles that are sharp less so.
+pub(crate) fn widen(
+    surface: &mut Surface,
+    fans: &Fans,
+    last: Vec3,
+    mut some: Vec<u32>,
+) -> Result<()> {
     for _ in 0..STEPS {
-        let mut moved = Vec::new();
-        extend(
-            &mut moved,
-            sharp.iter().flat_map(|&t| surface.triangles[t as usize]),
-        )?;
-        moved.sort_unstable();
-        moved.dedup();
-        for p in moved.iter().map(|&p| p as usize) {
-            let way = sub(before[p], surface.points[p]);
-            surface.points[p] = along(surface.points[p], STEP, way);
-        }
-        let around = moved.iter().flat_map(|&p| fans.of(p));
-        let mut near = collected(around.map(|&e| e / 3))?;
-        near.sort_unstable();
-        near.dedup();
-        near.retain(|&t| is_sharpened(before, surface, t));
-        if near.is_empty() {
+        some.retain(|&t| is_sharp(surface, t));
+        let mut corners = collected(some.iter().flat_map(|&t| surface.triangles[t as usize]))?;
+        // By place, as all tiles of a component would.
+        corners.sort_unstable_by_key(|&p| (surface.points[p as usize].map(f64::to_bits), p));
+        corners.dedup();
+        corners.retain(|&p| has_gained(surface, fans.of(p), p, last));
+        if corners.is_empty() {
             break;
         }
-        sharp = near;
+        some = collected(corners.iter().flat_map(|&p| fans.of(p)).map(|&e| e / 3))?;
+        some.sort_unstable();
+        some.dedup();
     }
     Ok(())
 }
 
-/// Whether a triangle is sharp, and was less so before.
-fn is_sharpened(before: &[Vec3], surface: &Surface, t: u32) -> bool {
-    let corners = surface.triangles[t as usize].map(|p| p as usize);
-    let now = sine_of_smallest_angle(corners.map(|p| surface.points[p]));
-    now < SHARP && now < sine_of_smallest_angle(corners.map(|p| before[p]))
+fn is_sharp(surface: &Surface, t: u32) -> bool {
+    sine(surface, surface.triangles[t as usize]) < SHARP
+}
+
+/// Whether a point has moved to where its triangles lack less: along the surface, or where that is of no
+/// use along the normal.
+fn has_gained(surface: &mut Surface, leaving: &[u32], p: u32, last: Vec3) -> bool {
+    let lack = |surface: &Surface| -> f64 {
+        let triangles = leaving.iter().map(|&e| surface.triangles[e as usize / 3]);
+        let lack = triangles.map(|t| (ENOUGH - sine(surface, t)).max(0.0));
+        lack.map(|lack| lack * lack).sum()
+    };
+    let from = surface.points[p as usize];
+    let before = (1.0 - GAIN) * lack(surface);
+    let mut best = (before, from);
+    for ways in ways(surface, leaving, p, last) {
+        for (way, share) in ways
+            .iter()
+            .flat_map(|way| SHARES.map(|share| (*way, share)))
+        {
+            surface.points[p as usize] = along(from, share, way);
+            let lack = lack(surface);
+            if lack < best.0 {
+                best = (lack, surface.points[p as usize]);
+            }
+        }
+        if best.0 < before {
+            break;
+        }
+    }
+    surface.points[p as usize] = best.1;
+    best.0 < before
+}
+
+/// Ways that a point may go, as long as an edge: along the surface to and from each point beside it, and
+/// along the normal; one on the border of the volume, none.
+fn ways(surface: &Surface, leaving: &[u32], p: u32, last: Vec3) -> [Vec<Vec3>; 2] {
+    let (triangles, points) = (&surface.triangles, &surface.points);
+    let from = points[p as usize];
+    if (0..3).any(|a| from[a] <= 0.0 || from[a] >= last[a]) {
+        return Default::default();
+    }
+    let normal = normal_of_fan(points, triangles, leaving);
+    let ends = leaving.iter().map(|&e| ends(triangles, e).1 as usize);
+    let spokes = ends.map(|q| sub(points[q], from));
+    let across = spokes.clone();
+    let across = across.map(|way| along(way, -dot(way, normal), normal));
+    let up = spokes.take(1).map(|way| normal.map(|v| length(way) * v));
+    let both = |way: Vec3| [way, way.map(|v| -v)];
+    [across.flat_map(both).collect(), up.flat_map(both).collect()]
+}
+
+fn sine(surface: &Surface, triangle: [u32; 3]) -> f64 {
+    sine_of_smallest_angle(triangle.map(|p| surface.points[p as usize]))
 }
 
 #[cfg(test)]
@@ -79,55 +139,70 @@ mod tests {
     use crate::execution::Quiet;
 
     /// A hexagon of equilateral triangles and, far from it, another one; both centres have moved.
-    fn hexagons(moves: [Vec3; 2]) -> (Vec<Vec3>, Surface) {
+    fn hexagons(moves: [Vec3; 2]) -> Surface {
         let mut surface = Surface::default();
-        for x in [0.0, 50.0] {
+        for (x, way) in [5.0, 50.0].into_iter().zip(moves) {
             let centre = surface.points.len() as u32;
-            surface.points.push([x, 0.0, 0.0]);
+            surface.points.push(along([x, 5.0, 5.0], 1.0, way));
             for k in 0..6 {
                 let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
-                surface.points.push([x + cos, sin, 0.0]);
+                surface.points.push([x + cos, 5.0 + sin, 5.0]);
                 let k = k as u32;
                 let spoke = [centre, centre + 1 + k, centre + 1 + (k + 1) % 6];
                 surface.triangles.push(spoke);
             }
         }
         surface.source.resize(surface.points.len(), 0);
-        let before = surface.points.clone();
-        for (centre, way) in [0, 7].into_iter().zip(moves) {
-            surface.points[centre] = along(before[centre], 1.0, way);
-        }
-        (before, surface)
-    }
-
-    fn taken_back((before, mut surface): (Vec<Vec3>, Surface), threads: usize) -> Surface {
-        let mut quiet = Quiet::default();
-        let fans = Fans::new(&surface.triangles, surface.points.len()).unwrap();
-        let mut execution = Execution::new(threads, &mut quiet).unwrap();
-        take_back(&before, &mut surface, &fans, &mut execution).unwrap();
         surface
     }
 
-    #[test]
-    fn a_move_that_makes_a_triangle_sharp_is_taken_back_as_far_as_it_takes() {
-        let found = taken_back(hexagons([[0.7, 0.0, 0.0], [0.0, 0.2, 0.0]]), 2);
-        let sine = |t: &[u32; 3]| sine_of_smallest_angle(t.map(|p| found.points[p as usize]));
-        assert!(found.triangles.iter().all(|t| sine(t) >= SHARP));
-        // Two steps are enough for the one, and the other one has done no harm.
-        assert!((found.points[0][0] - 0.7 * 0.75 * 0.75).abs() < 1e-12);
-        assert_eq!(found.points[7], [50.0, 0.2, 0.0]);
+    fn widened(mut surface: Surface, threads: usize) -> Surface {
+        let mut quiet = Quiet::default();
+        let fans = Fans::new(&surface.triangles, surface.points.len()).unwrap();
+        let mut execution = Execution::new(threads, &mut quiet).unwrap();
+        widen_all(&mut surface, &fans, [100.0; 3], &mut execution).unwrap();
+        surface
+    }
+
+    fn is_any_sharp(surface: &Surface) -> bool {
+        (0..surface.triangles.len() as u32).any(|t| is_sharp(surface, t))
     }
 
     #[test]
-    fn what_was_sharp_before_stays_moved() {
-        let (mut before, surface) = hexagons([[0.7, 0.0, 0.0], [0.0; 3]]);
-        before[0][0] = 0.75;
-        assert_eq!(taken_back((before, surface), 1).points[0][0], 0.7);
+    fn what_is_sharp_is_widened_and_all_else_stays() {
+        let hexagons = || hexagons([[0.7, 0.0, 0.0], [0.0, 0.2, 0.0]]);
+        assert!(is_any_sharp(&hexagons()));
+        let found = widened(hexagons(), 2);
+        assert!(!is_any_sharp(&found));
+        assert_eq!(found.points[7..], hexagons().points[7..]);
     }
 
     #[test]
-    fn any_number_of_threads_takes_the_same_back() {
+    fn points_on_a_border_of_the_volume_stay() {
+        // Two squares side by side, each cut in two; the middle of the lower side is off to the left.
+        let lower = [1.0, 1.4, 3.0].map(|x| [x, 0.0, 1.0]);
+        let upper = [1.0, 2.0, 3.0].map(|x| [x, 1.0, 1.0]);
+        let squares = |height: f64| Surface {
+            points: [lower, upper]
+                .concat()
+                .iter()
+                .map(|p| along(*p, height, [0.0, 1.0, 0.0]))
+                .collect(),
+            triangles: vec![[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4]],
+            source: vec![0; 6],
+        };
+        let is_unmoved = |p: usize, height: f64| {
+            widened(squares(height), 1).points[p] == squares(height).points[p]
+        };
+        assert!(is_any_sharp(&squares(0.0)));
+        assert!((0..3).all(|p| is_unmoved(p, 0.0)));
+        assert!(!(0..3).all(|p| is_unmoved(p, 1.0)));
+        assert!(!is_any_sharp(&widened(squares(1.0), 1)));
+    }
+
+    #[test]
+    fn any_number_of_threads_finds_the_same() {
         let moved = || hexagons([[0.7, 0.0, 0.0], [0.1, 0.6, 0.3]]);
-        assert_eq!(taken_back(moved(), 1).points, taken_back(moved(), 2).points);
+        assert_eq!(widened(moved(), 1).points, widened(moved(), 2).points);
     }
 }
