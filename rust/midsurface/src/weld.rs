@@ -150,7 +150,8 @@ fn keeps_topology(surface: &Surface, fans: &Fans, e: u32) -> bool {
     common == sides().count() && sides().all(|f| enough(opposite(f)))
 }
 
-/// Whether the triangles around two points face as the surface does if both points are at `place`.
+/// Whether the triangles around two points face as the surface does if both points are at `place`, or
+/// have not done so before: on the border of the volume a row of slivers may be folded over.
 fn keeps_shape(surface: &Surface, fans: &Fans, points: [u32; 2], place: Vec3) -> bool {
     let triangles = || {
         let around = points.iter().flat_map(|&p| fans.of(p));
@@ -161,12 +162,14 @@ fn keeps_shape(surface: &Surface, fans: &Fans, points: [u32; 2], place: Vec3) ->
         along(sum, 1.0, twice_area(t.map(|p| surface.points[p as usize])))
     });
     let stays = |t: &[u32; 3]| !(t.contains(&points[0]) && t.contains(&points[1]));
+    let faces = |area: Vec3| dot(area, facing) > TURNED * length(area) * length(facing);
     triangles().filter(stays).all(|t| {
-        let moved = twice_area(t.map(|p| match points.contains(&p) {
+        let before = t.map(|p| surface.points[p as usize]);
+        let moved: [Vec3; 3] = std::array::from_fn(|k| match points.contains(&t[k]) {
             true => place,
-            false => surface.points[p as usize],
-        }));
-        dot(moved, facing) > TURNED * length(moved) * length(facing)
+            false => before[k],
+        });
+        faces(twice_area(moved)) || !faces(twice_area(before))
     })
 }
 
@@ -215,6 +218,20 @@ mod tests {
         boundary.sort_unstable();
         boundary.dedup();
         assert_eq!(boundary.len(), 4);
+    }
+
+    #[test]
+    fn a_row_folded_over_at_the_boundary_is_drawn_together() {
+        const ROWS: [f64; 4] = [0.0, 1.0, 2.02, 1.97];
+        let mut surface = lattice(6, 3, |i, j| [f64::from(i), ROWS[j as usize], 0.0]);
+        weld_all(&mut surface);
+        let area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|p| surface.points[p as usize]);
+            0.5 * cross(sub(b, a), sub(c, a))[2]
+        };
+        // None is left that faces downward, nor a sliver.
+        assert_eq!(surface.triangles.len(), 24);
+        assert!(surface.triangles.iter().all(|t| area(t) > 0.2));
     }
 
     #[test]
