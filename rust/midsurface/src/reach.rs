@@ -6,7 +6,8 @@
 //! sheet fraction, which is ½ on that and about 1 within. Such a *blind* rim looks ahead along its
 //! sheet, within the label: for a triangle across its way, or for where another blind rim would pass
 //! across it, were it to go on straight. It is then led on straight, to a little before that place.
-//! What runs on in the same sheet beyond is not looked for: a slit stays a slit.
+//! What runs on in the same sheet beyond is not looked for: a slit stays a slit, and so does a tear,
+//! whose ways lead towards each other: their mean would lead out of the sheet, to the one beside it.
 
 use crate::buckets::Buckets;
 use crate::cells::{bounds, near, Cells};
@@ -233,10 +234,13 @@ fn lengths(
 }
 
 /// How far each point of the blind rims may go: where the ways ahead turn along a rim the strip
-/// would fold, or spread into a fan.
+/// would fold, or spread into a fan; that of a tear goes nowhere.
 fn rooms(blind: &[Blind]) -> Result<Vec<f64>> {
     let mut rooms = filled(f64::INFINITY, blind.len())?;
     for (b, own) in blind.iter().enumerate() {
+        if is_of_tear(blind, b) {
+            rooms[b] = 0.0;
+        }
         let Some(after) = own.beside[1] else { continue };
         let turn = length(sub(blind[after].way, own.way));
         if turn > 0.0 {
@@ -247,6 +251,19 @@ fn rooms(blind: &[Blind]) -> Result<Vec<f64>> {
         }
     }
     Ok(rooms)
+}
+
+/// Whether the rim of a point comes back to it within as many points as ways are averaged over.
+fn is_of_tear(blind: &[Blind], b: usize) -> bool {
+    let mut at = b;
+    for _ in 0..2 * WAY_ROUNDS {
+        match blind[at].beside[1] {
+            Some(after) if after == b => return true,
+            Some(after) => at = after,
+            None => return false,
+        }
+    }
+    false
 }
 
 /// How far ahead each point of the blind rims sees another sheet.
@@ -399,6 +416,33 @@ mod tests {
     use super::*;
 
     const ACROSS_X: [Vec3; 3] = [[2.0, -1.0, -1.0], [2.0, 2.0, -1.0], [2.0, -1.0, 2.0]];
+
+    /// A rim of so many points around a hole, with all ways out of the sheet.
+    fn round_rim(count: usize) -> Vec<Blind> {
+        let point = |b: usize| {
+            let angle = std::f64::consts::TAU * b as f64 / count as f64;
+            Blind {
+                point: b as u32,
+                beside: [Some((b + count - 1) % count), Some((b + 1) % count)],
+                on_border: [false; 3],
+                place: [angle.cos(), angle.sin(), 0.0],
+                way: [0.0, 0.0, 1.0],
+            }
+        };
+        (0..count).map(point).collect()
+    }
+
+    #[test]
+    fn the_rim_of_a_tear_goes_nowhere_and_that_of_a_sheet_goes_on() {
+        assert_eq!(rooms(&round_rim(8)).unwrap(), [0.0; 8]);
+        let long = 2 * WAY_ROUNDS + 1;
+        assert_eq!(rooms(&round_rim(long)).unwrap(), vec![f64::INFINITY; long]);
+        // A short rim that ends at two others is none of a tear.
+        let mut open = round_rim(8);
+        open[7].beside[1] = None;
+        open[0].beside[0] = None;
+        assert_eq!(rooms(&open).unwrap(), [f64::INFINITY; 8]);
+    }
 
     #[test]
     fn what_lies_across_the_way_is_met() {
