@@ -19,7 +19,7 @@ const INSIDE: f64 = 0.7;
 /// Below this sheet fraction a rim is near, with few points to average over.
 pub(crate) const WHOLE: f64 = 0.95;
 /// and so is the border of the volume here, work units.
-const AT_BORDER: f64 = 4.0;
+pub(crate) const AT_BORDER: f64 = 4.0;
 /// From how many rings of points around those that find one face the thickness comes, and how often
 /// it is averaged to get to all of them.
 const RINGS: usize = 6;
