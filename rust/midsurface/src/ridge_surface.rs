@@ -9,8 +9,9 @@
 //! label (`holes.rs`), led on beyond the border of the volume (`beyond.rs`), moved midway between both
 //! faces (`midway.rs`, `look.rs`), made fair where these are not seen (`fairing.rs`), cut at the border,
 //! led on to where sheets meet (`reach.rs`), remeshed (`remesh`), rid of terraces (`terraces.rs`),
-//! moved a last little step (`midway.rs`) and rid of self-intersections (`self_intersections.rs`). How
-//! much of the progress a stage is given is how long it took on the membranes of real cells.
+//! moved a last little step (`midway.rs`), rid of sharp triangles (`sharp.rs`) and self-intersections
+//! (`self_intersections.rs`). How much of the progress a stage is given is how long it took on the
+//! membranes of real cells.
 
 use crate::bending;
 use crate::beyond::{cut_at_border, lead_beyond};

@@ -66,8 +66,10 @@ fn check(name: &str, limits: &Limits) {
     );
     let corner = |p: u32| mesh.points[p as usize].map(f64::from);
     let triangles: Vec<_> = mesh.triangles.iter().map(|t| t.map(corner)).collect();
-    let least = shapes(&triangles).smallest_angle;
+    let shapes = shapes(&triangles);
+    let (least, obtuse) = (shapes.smallest_angle, shapes.angles_over_120);
     expect(least >= LEAST_ANGLE, format!("an angle of {least} degrees"));
+    expect(obtuse == 0, format!("{obtuse} angles over 120 degrees"));
     assert!(failures.is_empty(), "{name}: {}", failures.join(", "));
 }
 
