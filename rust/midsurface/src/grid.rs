@@ -136,6 +136,11 @@ pub(crate) fn last_voxel(dimensions: [usize; 3], h: Vec3) -> Vec3 {
     [last(0), last(1), last(2)]
 }
 
+/// Whether a point lies on the border of a volume with this last voxel, or beyond it, for each axis.
+pub(crate) fn on_border(p: Vec3, last: Vec3) -> [bool; 3] {
+    std::array::from_fn(|a| p[a] <= 0.0 || p[a] >= last[a])
+}
+
 /// The largest coordinate of all points, whichever its sign.
 pub(crate) fn farthest(points: &[Vec3]) -> f64 {
     let coordinates = points.iter().flatten();

@@ -19,7 +19,7 @@ use crate::buckets::{self, Buckets};
 use crate::error::{collected, zeros, Result};
 use crate::execution::Execution;
 use crate::fairing::{self, fair};
-use crate::grid::{along, dot, last_voxel, length, unit, Vec3};
+use crate::grid::{along, dot, last_voxel, length, on_border, unit, Vec3};
 use crate::halfedge::Fans;
 use crate::interpolation::Sampler;
 use crate::look::{look, mean, Seen, AT_BORDER, WHOLE};
@@ -131,8 +131,7 @@ impl Label<'_> {
 
     /// Whether a point lies on the border of the volume, for each axis.
     pub fn on_border(&self, p: Vec3) -> [bool; 3] {
-        let last = self.last();
-        std::array::from_fn(|a| p[a] <= 0.0 || p[a] >= last[a])
+        on_border(p, self.last())
     }
 
     /// Whether a point lies in the volume, its border included.
@@ -257,8 +256,7 @@ fn move_once(
     for _ in 0..rounds {
         execution.fill(&mut averaged, PIECE, |piece, out| {
             for (i, out) in out.iter_mut().enumerate() {
-                let around = neighbours.of(PIECE * piece + i).iter();
-                *out = mean(seen[PIECE * piece + i], around.map(|&q| seen[q as usize]));
+                *out = mean_around(&seen, neighbours, PIECE * piece + i);
             }
         })?;
         std::mem::swap(&mut averaged, &mut seen);
@@ -295,10 +293,7 @@ fn average_more(
         let before = &*seen;
         execution.in_pool(|| {
             let all = averaged.par_iter_mut().with_min_len(PIECE).zip(some);
-            all.for_each(|(averaged, &p)| {
-                let around = neighbours.of(p).iter();
-                *averaged = mean(before[p], around.map(|&q| before[q as usize]));
-            });
+            all.for_each(|(averaged, &p)| *averaged = mean_around(before, neighbours, p));
         });
         for (&p, averaged) in some.iter().zip(&averaged) {
             seen[p] = *averaged;
@@ -307,10 +302,16 @@ fn average_more(
     Ok(())
 }
 
+/// Mean of what is seen at a point and those around it.
+fn mean_around(seen: &[Seen], neighbours: &Buckets<u32>, p: usize) -> Seen {
+    let around = neighbours.of(p).iter();
+    mean(seen[p], around.map(|&q| seen[q as usize]))
+}
+
 /// Moves a point along its normal; one on the border of the volume stays on the border.
 fn within_volume(p: Vec3, n: Vec3, off: f64, last: Vec3) -> Vec3 {
-    let on_border = |a: usize| p[a] <= 0.0 || p[a] >= last[a];
-    let way: Vec3 = std::array::from_fn(|a| if on_border(a) { 0.0 } else { n[a] });
+    let on_border = on_border(p, last);
+    let way: Vec3 = std::array::from_fn(|a| if on_border[a] { 0.0 } else { n[a] });
     let share = dot(way, way);
     if share < STEEP {
         return p;

@@ -24,7 +24,7 @@ use crate::distance;
 use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
 use crate::extension;
-use crate::grid::{last_voxel, Grid, Vec3};
+use crate::grid::{last_voxel, on_border, Grid, Vec3};
 use crate::halfedge::Fans;
 use crate::holes::{self, close_holes};
 use crate::interpolation::Sampler;
@@ -190,7 +190,7 @@ fn flatten(
     let h = grid.work_spacing();
     let last = last_voxel(grid.dimensions, h);
     let point = |p: &Vec3| {
-        let on_border: [bool; 3] = std::array::from_fn(|a| p[a] <= 0.0 || p[a] >= last[a]);
+        let on_border = on_border(*p, last);
         let axis = |of: bool| on_border.map(|on| f64::from(u8::from(on == of)));
         let on_boundary = match on_border.iter().filter(|on| **on).count() {
             0 => OnBoundary::Freely,

@@ -4,7 +4,8 @@
 //! ends at a junction, or along a cut through what cannot be wound one way, both sides of which are
 //! rims in the same place. Moving midway, triangles as long as a voxel, and the low-pass then let
 //! the one run into the other. A rim that touches another triangle is drawn back into its own
-//! sheet, step by step and no farther than it takes. What touches even so is cut away.
+//! sheet, step by step and no farther than it takes, and what that has pressed is widened (`sharp.rs`).
+//! What touches even so is cut away.
 //!
 //! Only rims and what is next to them are looked at, in the cells of a grid, so that it costs little
 //! where nothing touches.

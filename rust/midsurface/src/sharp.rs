@@ -11,7 +11,7 @@
 
 use crate::error::{collected, extend, Result};
 use crate::execution::Execution;
-use crate::grid::{along, dot, length, sub, Vec3};
+use crate::grid::{along, dot, length, on_border, sub, Vec3};
 use crate::halfedge::{ends, Fans};
 use crate::manifold::Surface;
 use crate::normals::normal_of_fan;
@@ -116,7 +116,7 @@ fn has_gained(surface: &mut Surface, leaving: &[u32], p: u32, last: Vec3) -> boo
 fn ways(surface: &Surface, leaving: &[u32], p: u32, last: Vec3) -> [Vec<Vec3>; 2] {
     let (triangles, points) = (&surface.triangles, &surface.points);
     let from = points[p as usize];
-    if (0..3).any(|a| from[a] <= 0.0 || from[a] >= last[a]) {
+    if on_border(from, last).contains(&true) {
         return Default::default();
     }
     let normal = normal_of_fan(points, triangles, leaving);
