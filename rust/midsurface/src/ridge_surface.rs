@@ -47,7 +47,7 @@ use crate::sharp::{self, widen_all};
 use crate::sheet::Sheet;
 use crate::terraces::{flatten_terraces, Filters, LineOfPoint, LowPass, OnBoundary, STRONG};
 use crate::trim::trim;
-use crate::weld::weld;
+use crate::weld::{weld, weld_at_border};
 
 /// The edge length by default, in units of the finest spacing (the paper's step).
 const EDGE_LENGTH: f64 = std::f64::consts::SQRT_2;
@@ -329,6 +329,7 @@ pub(crate) fn led_on(
     execution: &mut Execution,
 ) -> Result<Surface> {
     cut_at_border(&mut surface, label.last())?;
+    weld_at_border(&mut surface, label.last(), execution)?;
     let mut surface = surface.compact()?;
     let fraction = values(label.batch, &surface, field, label.h, execution)?;
     let fans = Fans::new(&surface.triangles, surface.points.len())?;

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
-use crate::grid::{along, cross, dot, length, squared_distance, sub, Vec3};
+use crate::grid::{along, cross, dot, length, on_border, squared_distance, sub, Vec3};
 use crate::halfedge::{ends, next, triangles_at, Fans, NONE};
 use crate::hash::mixed;
 use crate::manifold::Surface;
@@ -23,12 +23,45 @@ const TURNED: f64 = 0.3;
 
 /// Draws the short edges of a consistently wound 2-manifold together.
 pub(crate) fn weld(surface: &mut Surface, execution: &mut Execution) -> Result<()> {
+    let middle = |p: Vec3, q: Vec3| Some(along(p, 0.5, sub(q, p)));
+    weld_some(surface, |_| true, middle, execution)
+}
+
+/// The same for edges that a cut at the border of the volume has left there: what lies on two borders
+/// stays on both. `last` is the last voxel of the volume, work coordinates.
+pub(crate) fn weld_at_border(
+    surface: &mut Surface,
+    last: Vec3,
+    execution: &mut Execution,
+) -> Result<()> {
+    let place = |p: Vec3, q: Vec3| {
+        let [of_p, of_q] = [p, q].map(|p| on_border(p, last));
+        let holds = |all: [bool; 3], some: [bool; 3]| (0..3).all(|a| all[a] || !some[a]);
+        match (holds(of_p, of_q), holds(of_q, of_p)) {
+            (true, true) => Some(along(p, 0.5, sub(q, p))),
+            (true, false) => Some(p),
+            (false, true) => Some(q),
+            (false, false) => None,
+        }
+    };
+    let is_at_border = |p: Vec3| on_border(p, last).contains(&true);
+    weld_some(surface, is_at_border, place, execution)
+}
+
+/// Draws short edges together whose ends are both `wanted`, to a `place` that is given two points of the
+/// boundary or two others.
+fn weld_some(
+    surface: &mut Surface,
+    wanted: impl Fn(Vec3) -> bool + Sync,
+    place: impl Fn(Vec3, Vec3) -> Option<Vec3>,
+    execution: &mut Execution,
+) -> Result<()> {
     for _ in 0..ROUNDS {
-        let short = short_edges(surface, execution)?;
+        let short = short_edges(surface, &wanted, execution)?;
         if short.is_empty() {
             break;
         }
-        let pairs = pairs(surface, &fans_near(surface, &short)?, short)?;
+        let pairs = pairs(surface, &fans_near(surface, &short)?, short, &place)?;
         if pairs.is_empty() {
             break;
         }
@@ -49,15 +82,20 @@ pub(crate) fn weld(surface: &mut Surface, execution: &mut Execution) -> Result<(
 
 /// The half-edges of short edges, in the order in which they go: as a hash of their places tells. Along a
 /// straight rim lengths may go on falling, and the shortest first would decide about those far off.
-fn short_edges(surface: &Surface, execution: &Execution) -> Result<Vec<u32>> {
-    let squared = |e: u32| {
+fn short_edges(
+    surface: &Surface,
+    wanted: impl Fn(Vec3) -> bool + Sync,
+    execution: &Execution,
+) -> Result<Vec<u32>> {
+    let is_one = |e: u32| {
         let (a, b) = ends(&surface.triangles, e);
-        squared_distance(surface.points[a as usize], surface.points[b as usize])
+        let [p, q] = [a, b].map(|p| surface.points[p as usize]);
+        squared_distance(p, q) < SHORT * SHORT && wanted(p) && wanted(q)
     };
     let mut is_short: Vec<bool> = zeros(3 * surface.triangles.len())?;
     execution.in_pool(|| {
         let all = is_short.par_iter_mut().enumerate();
-        all.for_each(|(e, is_short)| *is_short = squared(e as u32) < SHORT * SHORT);
+        all.for_each(|(e, is_short)| *is_short = is_one(e as u32));
     });
     let all = 0..is_short.len() as u32;
     let mut short = collected(all.filter(|&e| is_short[e as usize]))?;
@@ -92,7 +130,12 @@ fn fans_near(surface: &Surface, short: &[u32]) -> Result<Fans> {
 }
 
 /// Points to be drawn into others and where to, none of them near another's triangles.
-fn pairs(surface: &Surface, fans: &Fans, short: Vec<u32>) -> Result<Vec<(u32, u32, Vec3)>> {
+fn pairs(
+    surface: &Surface,
+    fans: &Fans,
+    short: Vec<u32>,
+    place: impl Fn(Vec3, Vec3) -> Option<Vec3>,
+) -> Result<Vec<(u32, u32, Vec3)>> {
     let mut taken: Vec<bool> = zeros(surface.points.len())?;
     let mut pairs = Vec::new();
     for e in short {
@@ -109,10 +152,11 @@ fn pairs(surface: &Surface, fans: &Fans, short: Vec<u32>) -> Result<Vec<(u32, u3
         let (from, to) = if on_boundary[1] { (a, b) } else { (b, a) };
         let [p, q] = [from, to].map(|p| surface.points[p as usize]);
         let place = match on_boundary[0] == on_boundary[1] {
-            true => along(p, 0.5, sub(q, p)),
-            false => q,
+            true => place(p, q),
+            false => Some(q),
         };
-        if keeps_shape(surface, fans, [from, to], place) {
+        let keeps_shape = |place: &Vec3| keeps_shape(surface, fans, [from, to], *place);
+        if let Some(place) = place.filter(keeps_shape) {
             around().for_each(|p| taken[p as usize] = true);
             push(&mut pairs, (from, to, place))?;
         }
@@ -232,6 +276,28 @@ mod tests {
         // None is left that faces downward, nor a sliver.
         assert_eq!(surface.triangles.len(), 24);
         assert!(surface.triangles.iter().all(|t| area(t) > 0.2));
+    }
+
+    #[test]
+    fn at_a_cut_short_edges_go_and_what_lies_on_two_borders_stays_there() {
+        let mut surface = lattice(4, 4, |i, j| [f64::from(i), f64::from(j), 5.0]);
+        // Beside the corner of the volume, along a border, and away from all.
+        surface.points[1] = [0.02, 0.0, 5.0];
+        surface.points[3] = [2.1, 0.0, 5.0];
+        surface.points[12] = [2.9, 2.0, 5.0];
+        let before = surface.triangles.len();
+        let mut quiet = Quiet::default();
+        let execution = &mut Execution::new(2, &mut quiet).unwrap();
+        weld_at_border(&mut surface, [9.0; 3], execution).unwrap();
+        assert_eq!(surface.triangles.len(), before - 2);
+        let is_used = |p: &Vec3| {
+            let mut corners = surface.triangles.iter().flatten();
+            corners.any(|&q| surface.points[q as usize] == *p)
+        };
+        for place in [[0.0, 0.0, 5.0], [2.05, 0.0, 5.0], [2.9, 2.0, 5.0]] {
+            assert!(is_used(&place), "{place:?}");
+        }
+        assert!(!is_used(&[0.02, 0.0, 5.0]));
     }
 
     #[test]
