@@ -73,15 +73,15 @@ pub(crate) enum Before {
     Remeshed,
 }
 
-/// Side of a block in edge lengths.
+/// Side of a block in edge lengths, of the coarser mesh.
 const BLOCK: f64 = 20.0;
 /// Shifts of the grid of blocks from pass to pass, in sides along each axis.
 const SHIFTS: [f64; 5] = [0.0, 0.5, 0.25, 0.75, 0.4];
 /// What is reached at once: about twice the edges of a surface through voxels of size 1.
 const FINE: f64 = 1.8;
-/// Passes at twice the final edge length, and at the final one.
+/// Passes at twice the final edge length, and at the final one: most of the work is done in the first.
 const COARSE_PASSES: usize = 4;
-const FINE_PASSES: usize = 2;
+const FINE_PASSES: usize = 1;
 /// Passes over what is remeshed already.
 const MENDING_PASSES: usize = 4;
 /// Times that points are moved in a pass.
@@ -118,11 +118,13 @@ pub(crate) fn remesh_some(
     if !(0..triangles.len()).any(&is_own) {
         return Ok(Remeshed::default());
     }
+    let twice = 2.0 * edge_length;
     let (coarse, fine) = match before {
-        Before::Any => (schedule(2.0 * edge_length), FINE_PASSES),
+        Before::Any => (schedule(twice), FINE_PASSES),
         Before::Remeshed => (Vec::new(), MENDING_PASSES),
     };
-    let over_blocks = 2 * (coarse.len() + fine);
+    let all = coarse.len() + fine;
+    let over_blocks = 2 * all;
     execution.still(reference::PASSES + over_blocks + OTHER_PASSES);
     let reference = Reference::new(points, triangles, edge_length, execution)?;
     let mut surface = start(&reference, is_own)?;
@@ -133,8 +135,8 @@ pub(crate) fn remesh_some(
     if !coarse.is_empty() {
         surface = subdivide(&surface, &reference, execution)?;
     }
-    for number in 0..fine {
-        let blocks = Blocks::new(&surface, BLOCK * edge_length, shift(number), execution)?;
+    for number in coarse.len()..all {
+        let blocks = Blocks::new(&surface, BLOCK * twice, shift(number), execution)?;
         let scale = (1.0, edge_length);
         surface = blocks.work(&surface, &reference, scale, execution, |patch| {
             improve(patch)?;
