@@ -42,7 +42,7 @@ const UPRIGHT: f64 = 0.95;
 /// neighbouring points, whose number is the variance in about two squared edges of the contour; by
 /// how much a point may be off, work units; and that one in so many points looks for the faces,
 /// since where many are averaged a few say as much. What is seen gets surer with each move.
-const MOVES: [Move; 4] = [(12, 2.0, 4), (9, 1.0, 2), (7, 0.8, 2), (6, 0.7, 1)];
+const MOVES: [Move; 4] = [(12, 2.0, 4), (9, 1.0, 4), (7, 0.8, 2), (6, 0.7, 1)];
 type Move = (usize, f64, u8);
 /// At the border of the volume, where points lie on one side only and often see one face, so many times as
 /// many rounds more.

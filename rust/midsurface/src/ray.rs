@@ -10,13 +10,15 @@ use crate::interpolation::Sampler;
 use crate::mask::Mask;
 
 /// Shortest step along the ray, work units.
-const STEP: f64 = 0.5;
+const STEP: f64 = 0.75;
 /// From a voxel's depth to a step that cannot pass a face, work units.
 const SHORT_OF_FACE: f64 = 1.5;
 /// From voxels no deeper than this a ray goes on by the shortest step, work units.
 pub(crate) const DEEP: f64 = SHORT_OF_FACE + STEP;
 /// Rounds of false position (Illinois): a hundredth of a step and better.
 const ROUNDS: usize = 3;
+/// A mask this near to one half is: a hundredth of a voxel or two.
+const ENOUGH: f64 = 0.01;
 
 /// How a ray through the label ended, after which length, work units.
 #[derive(Clone, Copy)]
@@ -85,6 +87,9 @@ impl<'a> Ray<'a> {
             let Some((mask, _)) = self.look(t) else {
                 break;
             };
+            if (mask - 0.5).abs() < ENOUGH {
+                return t;
+            }
             let inside = mask >= 0.5;
             // An end that stays counts half, or the other would creep.
             let stays = was_inside == Some(inside);

@@ -54,7 +54,7 @@ const EDGE_LENGTH: f64 = std::f64::consts::SQRT_2;
 /// How far offsets are followed, in the coarsest spacing.
 const FARTHEST: f64 = 2.0;
 /// Times that neighbouring sheets settle.
-const SETTLINGS: usize = 4;
+const SETTLINGS: usize = 3;
 /// Rings of voxels that sheets are extended by, at most.
 const RINGS: u8 = 12;
 /// The filters that flatten terraces: shorter waves than for lines, since midway points have fewer
