@@ -134,7 +134,7 @@ pub(crate) fn cut_at_border(surface: &mut Surface, last: Vec3) -> Result<()> {
         }
     }
     match is_cut {
-        true => drop_pieces(surface, LEAST, |_| true),
+        true => drop_pieces(surface, LEAST),
         false => Ok(()),
     }
 }

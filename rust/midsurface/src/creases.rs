@@ -26,6 +26,9 @@ use crate::region::Region;
 
 /// Rings of points around blind rims that are looked at.
 const RINGS: usize = 8;
+/// A rim nearer to the border of the volume all along, work units, is where the contour ends or tears
+/// before that, and no sheet meets another.
+const BORDER: f64 = 2.0;
 /// Rounds of averaging normals, and how long their mean is at least where there is no crease.
 const ROUNDS: usize = 3;
 const SMOOTH: f64 = 0.9;
@@ -57,13 +60,18 @@ pub(crate) fn cut_creases(
     let is_blind = blind(label, surface, &fans, (fraction, WITHIN), execution)?;
     let numbers = 0..surface.points.len() as u32;
     let blind = collected(numbers.filter(|&p| is_blind[p as usize]))?;
+    let sides = sides(surface, &fans, (&blind, &is_blind))?;
+    let is_inside = |p: &Vec3| label.depth(*p) >= BORDER;
+    let mut goes_inside = collected(surface.points.iter().map(is_inside))?;
+    tell_along(&sides, &mut goes_inside)?;
+    let blind = collected(blind.into_iter().filter(|&p| goes_inside[p as usize]))?;
     let mut creases = creases(surface, &fans, &blind)?;
     creases.retain(|seed| fraction_at(label, surface, fraction, seed.point) >= WITHIN);
     if creases.is_empty() {
         return Ok(fans);
     }
     let mut goes = near_seeds(surface, &fans, &creases, CLEAR)?;
-    let reached = reached_rims(surface, &fans, (&blind, &is_blind), &goes)?;
+    let reached = reached_rims(surface, &fans, (&blind, &is_blind, &sides), &goes)?;
     let ahead = near_seeds(surface, &fans, &reached, AHEAD)?;
     for (goes, is_ahead) in goes.iter_mut().zip(ahead) {
         *goes |= is_ahead;
@@ -86,20 +94,13 @@ fn creases(surface: &Surface, fans: &Fans, blind: &[u32]) -> Result<Vec<Seed>> {
     collected(creased.map(|(&point, _)| Seed { point, way: None }))
 }
 
-/// The points of blind rims that what goes reaches, each with its way ahead.
-fn reached_rims(
+/// The sides of triangles that make up blind rims.
+fn sides(
     surface: &Surface,
     fans: &Fans,
     (blind, is_blind): (&[u32], &[bool]),
-    goes: &[bool],
-) -> Result<Vec<Seed>> {
+) -> Result<Vec<[usize; 2]>> {
     let triangles = &surface.triangles;
-    let mut is_reached: Vec<bool> = zeros(surface.points.len())?;
-    for (triangle, _) in triangles.iter().zip(goes).filter(|(_, goes)| **goes) {
-        for p in triangle.map(|p| p as usize) {
-            is_reached[p] = is_blind[p];
-        }
-    }
     let mut sides = Vec::new();
     for &p in blind {
         for &e in fans.of(p) {
@@ -109,11 +110,34 @@ fn reached_rims(
             }
         }
     }
+    Ok(sides)
+}
+
+/// Lets the points of which something is true tell those along their rims.
+fn tell_along(sides: &[[usize; 2]], is_true: &mut [bool]) -> Result<()> {
     for _ in 0..ALONG {
-        let is_news = |side: &&[usize; 2]| is_reached[side[0]] != is_reached[side[1]];
+        let is_news = |side: &&[usize; 2]| is_true[side[0]] != is_true[side[1]];
         let told = collected(sides.iter().filter(is_news).flatten().copied())?;
-        told.into_iter().for_each(|p| is_reached[p] = true);
+        told.into_iter().for_each(|p| is_true[p] = true);
     }
+    Ok(())
+}
+
+/// The points of blind rims that what goes reaches, each with its way ahead.
+fn reached_rims(
+    surface: &Surface,
+    fans: &Fans,
+    (blind, is_blind, sides): (&[u32], &[bool], &[[usize; 2]]),
+    goes: &[bool],
+) -> Result<Vec<Seed>> {
+    let triangles = &surface.triangles;
+    let mut is_reached: Vec<bool> = zeros(surface.points.len())?;
+    for (triangle, _) in triangles.iter().zip(goes).filter(|(_, goes)| **goes) {
+        for p in triangle.map(|p| p as usize) {
+            is_reached[p] = is_blind[p];
+        }
+    }
+    tell_along(sides, &mut is_reached)?;
     let mut reached = Vec::new();
     for &point in blind {
         if is_reached[point as usize] {

@@ -9,6 +9,9 @@
 //! across is cut away, smaller holes first, so that in the end one of the two sheets goes through
 //! and the other one ends at it on both sides.
 //!
+//! At the border of the volume only a short rim is one of a false hole: a tear next to it or, all on
+//! it, a pipe between walls of the contour, whichever way these face.
+//!
 //! What is not closed: what is wider than [`WIDEST`], or could only be closed by turning over, as
 //! the rim of a scrap could.
 
@@ -24,7 +27,7 @@ use crate::interpolation::Sampler;
 use crate::manifold::{split_points_among, Surface};
 use crate::midway::Label;
 use crate::normals::normal_of_fan;
-use crate::scraps::drop_scraps;
+use crate::scraps::drop_scraps_near;
 use crate::touching::{touch, TOUCHING};
 
 /// The sheet fraction is at least this all along a rim that the label has no part in: it is ½ along one of
@@ -38,6 +41,12 @@ const WIDEST: f64 = 8.0;
 /// work units.
 const DEEP: f64 = 0.5;
 const STEP: f64 = 0.5;
+/// The longest rim of a false hole that has some points on the border of the volume, and of one that has
+/// all of them there, work units: round a lumen of one voxel it is 2π long.
+const AT_BORDER: f64 = 12.0;
+const PIPE: f64 = 4.0;
+/// Normals all round a pipe have a mean shorter than this.
+const FLAT: f64 = 0.7;
 /// Triangles that close a hole turn no farther than this cosine away from the surface at its rim.
 const TURNED: f64 = 0.3;
 /// What passes through a hole does so with no more than this cosine between the normals.
@@ -120,30 +129,47 @@ fn holes(
     fraction: &[f32],
     execution: &mut Execution,
 ) -> Result<Vec<Vec<u32>>> {
-    let mut is_blind = blind(label, surface, fans, (fraction, UNCUT), execution)?;
+    let mut is_open = blind(label, surface, fans, (fraction, UNCUT), execution)?;
+    let is_on_border = |p: u32| label.on_border(surface.points[p as usize]).contains(&true);
+    let count = surface.points.len() as u32;
+    for p in (0..count).filter(|&p| is_on_border(p)) {
+        is_open[p as usize] = fans.is_boundary(&surface.triangles, p);
+    }
     let after = |p: u32| {
         let mut leaving = fans.of(p).iter().copied();
         let on_rim = leaving.find(|&e| fans.twin(&surface.triangles, e) == NONE)?;
         Some(ends(&surface.triangles, on_rim).1)
     };
     let mut holes = Vec::new();
-    for first in 0..surface.points.len() as u32 {
+    for first in 0..count {
         let mut rim = Vec::new();
         let mut at = first;
-        // A rim that is not blind all around ends where it was left before, or is not.
-        while std::mem::take(&mut is_blind[at as usize]) {
+        // A rim that is not of a hole all around ends where it was left before, or is not.
+        while std::mem::take(&mut is_open[at as usize]) {
             push(&mut rim, at)?;
             match after(at) {
                 Some(after) => at = after,
                 None => break,
             }
         }
-        if at == first && (3..=MOST).contains(&rim.len()) {
+        let longest = match rim.iter().filter(|&&p| is_on_border(p)).count() {
+            0 => f64::INFINITY,
+            on_border if on_border < rim.len() => AT_BORDER,
+            _ => PIPE,
+        };
+        if at == first && (3..=MOST).contains(&rim.len()) && perimeter(surface, &rim) <= longest {
             push(&mut holes, rim)?;
         }
     }
     holes.sort_by_key(Vec::len);
     Ok(holes)
+}
+
+/// How long a rim is.
+fn perimeter(surface: &Surface, rim: &[u32]) -> f64 {
+    let place = |p: &u32| surface.points[*p as usize];
+    let sides = rim.iter().zip(rim.iter().cycle().skip(1));
+    sides.map(|(p, q)| length(sub(place(q), place(p)))).sum()
 }
 
 /// The rim of a hole that may be closed.
@@ -157,6 +183,8 @@ struct Rim<'a> {
     /// How deep the label is at the points.
     depths: Vec<f64>,
     distance: Sampler<'a>,
+    /// Whether it is a pipe's, whose walls face anyhow.
+    is_pipe: bool,
 }
 
 impl<'a> Rim<'a> {
@@ -169,9 +197,20 @@ impl<'a> Rim<'a> {
         let distance = label.distance(surface.source[points[0] as usize]);
         let places = collected(points.iter().map(|&p| surface.points[p as usize]))?;
         let normal = |&p: &u32| normal_of_fan(&surface.points, &surface.triangles, fans.of(p));
+        let mut normals = collected(points.iter().map(normal))?;
+        let on_border = places
+            .iter()
+            .filter(|p| label.on_border(**p).contains(&true))
+            .count();
+        let sum = normals.iter().fold([0.0; 3], |sum, n| along(sum, 1.0, *n));
+        if on_border > 0 {
+            // Those of the few triangles beside the border say little.
+            normals.fill(unit(sum));
+        }
         Ok(Self {
-            normals: collected(points.iter().map(normal))?,
+            normals,
             depths: collected(places.iter().map(|&p| distance.linear(p)))?,
+            is_pipe: on_border == points.len() && length(sum) < FLAT * points.len() as f64,
             surface,
             fans,
             points,
@@ -243,9 +282,8 @@ impl<'a> Rim<'a> {
     fn is_level(&self, i: usize, k: usize, j: usize) -> bool {
         let [a, b, c] = [k, i, j].map(|at| self.places[at]);
         let normal = unit(cross(sub(b, a), sub(c, a)));
-        [i, k, j]
-            .iter()
-            .all(|&at| dot(normal, self.normals[at]) >= TURNED)
+        let mut corners = [i, k, j].into_iter();
+        self.is_pipe || corners.all(|at| dot(normal, self.normals[at]) >= TURNED)
     }
 }
 
@@ -367,7 +405,7 @@ pub(crate) fn remove(surface: &mut Surface, goes: &[bool], first: usize) -> Resu
     if among.contains(&true) {
         split_points_among(surface, &among)?;
         // Points that were split off are new.
-        drop_scraps(surface, |p| among.get(p).is_none_or(|among| *among))?;
+        drop_scraps_near(surface, |p| among.get(p).is_none_or(|among| *among))?;
         *surface = std::mem::take(surface).compact()?;
     }
     Ok(())

@@ -295,7 +295,7 @@ pub(crate) fn trimmed(
     execution: &mut Execution,
 ) -> Result<Surface> {
     trim(&mut surface, fraction, last)?;
-    drop_scraps(&mut surface, |_| true)?;
+    drop_scraps(&mut surface, last)?;
     weld(&mut surface, execution)?;
     execution.pass_done()?;
     surface.compact()

@@ -1,28 +1,44 @@
 //! Surface → surface without scraps.
 //!
 //! Where sheets meet, or a rim is ragged, the contour leaves small pieces beside the sheet. A part's
-//! largest piece is never one of them: a small label keeps its surface. What is cut later leaves scraps
-//! where it was cut, and only there they are looked for: what is far off makes no difference.
+//! largest piece is never one of them: a small label keeps its surface. Nor is what the border of the
+//! volume cuts off all round: of a sheet across a corner of the volume there may be no more. What is cut
+//! later leaves scraps where it was cut, and only there they are looked for: what is far off makes no
+//! difference.
 
 use crate::components::DisjointSets;
-use crate::error::{zeros, Result};
-use crate::grid::{cross, length, sub};
+use crate::error::{collected, zeros, Result};
+use crate::grid::{cross, length, on_border, sub, Vec3};
+use crate::halfedge::Edges;
 use crate::manifold::Surface;
 
 /// Smaller pieces of surface are scraps, square work units.
 const SCRAP: f64 = 15.0;
 
-/// Drops the scraps of a surface, whose points have their parts as sources, among the pieces of which a
-/// point `is_near` a cut.
-pub(crate) fn drop_scraps(surface: &mut Surface, is_near: impl Fn(usize) -> bool) -> Result<()> {
-    drop_pieces(surface, SCRAP, is_near)
+/// Drops the scraps of a surface, whose points have their parts as sources; the volume's last voxel is
+/// at `last`.
+pub(crate) fn drop_scraps(surface: &mut Surface, last: Vec3) -> Result<()> {
+    drop_if(surface, SCRAP, |_| true, Some(last))
 }
 
-/// The same for pieces smaller than this, square work units.
-pub(crate) fn drop_pieces(
+/// The same among the pieces of which a point `is_near` a cut.
+pub(crate) fn drop_scraps_near(
+    surface: &mut Surface,
+    is_near: impl Fn(usize) -> bool,
+) -> Result<()> {
+    drop_if(surface, SCRAP, is_near, None)
+}
+
+/// Drops the pieces smaller than this, square work units, wherever they end.
+pub(crate) fn drop_pieces(surface: &mut Surface, scrap: f64) -> Result<()> {
+    drop_if(surface, scrap, |_| true, None)
+}
+
+fn drop_if(
     surface: &mut Surface,
     scrap: f64,
     is_near: impl Fn(usize) -> bool,
+    last: Option<Vec3>,
 ) -> Result<()> {
     let mut pieces = DisjointSets::new(surface.points.len())?;
     for t in &surface.triangles {
@@ -44,12 +60,44 @@ pub(crate) fn drop_pieces(
         let own = &mut largest[part_of(t[0])];
         *own = own.max(area[pieces.find(t[0] as usize)]);
     }
-    let mut triangles = std::mem::take(&mut surface.triangles);
-    triangles.retain(|t| {
+    let mut goes: Vec<bool> = zeros(surface.points.len())?;
+    for t in &surface.triangles {
         let piece = pieces.find(t[0] as usize);
-        area[piece] >= scrap || area[piece] >= largest[part_of(t[0])] || !may_go[piece]
-    });
-    surface.triangles = triangles;
+        goes[piece] = area[piece] < scrap && area[piece] < largest[part_of(t[0])] && may_go[piece];
+    }
+    if let Some(last) = last {
+        keep_cut_off(surface, &mut pieces, &mut goes, last)?;
+    }
+    let triangles = &mut surface.triangles;
+    triangles.retain(|t| !goes[pieces.find(t[0] as usize)]);
+    Ok(())
+}
+
+/// Keeps those of the pieces that would go that end, and nowhere but on the border of the volume.
+fn keep_cut_off(
+    surface: &Surface,
+    pieces: &mut DisjointSets,
+    goes: &mut [bool],
+    last: Vec3,
+) -> Result<()> {
+    let triangles = &surface.triangles;
+    let mut is_small = |t: &u32| goes[pieces.find(triangles[*t as usize][0] as usize)];
+    let small = collected((0..triangles.len() as u32).filter(&mut is_small))?;
+    if small.is_empty() {
+        return Ok(());
+    }
+    let edges = Edges::of_triangles(triangles, &small, surface.points.len())?;
+    let border = |p: u32| on_border(surface.points[p as usize], last);
+    let mut ends: Vec<bool> = zeros(surface.points.len())?;
+    let mut ends_within: Vec<bool> = zeros(surface.points.len())?;
+    for (a, b, _) in edges.groups().filter(|(.., group)| group.len() == 1) {
+        let piece = pieces.find(a as usize);
+        ends[piece] = true;
+        ends_within[piece] |= !border(a).iter().zip(border(b)).any(|(a, b)| *a && b);
+    }
+    for ((goes, ends), ends_within) in goes.iter_mut().zip(ends).zip(ends_within) {
+        *goes &= !ends || ends_within;
+    }
     Ok(())
 }
 
@@ -75,11 +123,37 @@ mod tests {
             add_square(&mut surface, part, side);
         }
         let is_near = |p: usize| [0, 4, 12, 16].contains(&p);
-        drop_scraps(&mut surface, is_near).unwrap();
+        drop_scraps_near(&mut surface, is_near).unwrap();
         let first: Vec<u32> = surface.triangles.iter().step_by(2).map(|t| t[0]).collect();
         assert_eq!(first, [0, 8, 12]);
-        drop_scraps(&mut surface, |_| true).unwrap();
+        drop_pieces(&mut surface, SCRAP).unwrap();
         let first: Vec<u32> = surface.triangles.iter().step_by(2).map(|t| t[0]).collect();
         assert_eq!(first, [0, 12]);
+    }
+
+    #[test]
+    fn what_the_border_cuts_off_all_round_stays() {
+        let mut surface = Surface::default();
+        add_square(&mut surface, 0, 9.0);
+        // A sheet across the corner of the volume, the same but for a rim within, and a closed one.
+        for last in [[3.0, 0.0, 0.0], [3.0, 0.5, 0.0]] {
+            let first = surface.points.len() as u32;
+            surface
+                .points
+                .extend([last, [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]]);
+            surface.triangles.push([0, 1, 2].map(|p| first + p));
+            surface.source.extend([0; 3]);
+        }
+        let first = surface.points.len() as u32;
+        surface
+            .points
+            .extend([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        surface.source.extend([0; 4]);
+        let sides = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        surface
+            .triangles
+            .extend(sides.map(|t| t.map(|p| first + p)));
+        drop_scraps(&mut surface, [100.0; 3]).unwrap();
+        assert_eq!(surface.triangles, [[0, 1, 2], [0, 2, 3], [4, 5, 6]]);
     }
 }

@@ -17,7 +17,7 @@ use crate::execution::Execution;
 use crate::grid::{along, cross, dot, sub, Vec3};
 use crate::halfedge::{Fans, NONE};
 use crate::manifold::{make_manifold, Surface};
-use crate::scraps::drop_scraps;
+use crate::scraps::drop_scraps_near;
 use crate::sharp::widen;
 use crate::touching::{touch, TOUCHING};
 
@@ -268,7 +268,7 @@ fn cut_away(
     surface.triangles.retain(|_| goes.next() == Some(false));
     make_manifold(surface, execution)?;
     // Points that were split off are new.
-    drop_scraps(surface, |p| taken.get(p).is_none_or(|taken| *taken))?;
+    drop_scraps_near(surface, |p| taken.get(p).is_none_or(|taken| *taken))?;
     *surface = std::mem::take(surface).compact()?;
     Ok(())
 }

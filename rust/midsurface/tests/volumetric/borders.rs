@@ -1,8 +1,8 @@
-//! Sheets that turn back just below a border of the volume, with one of their faces beyond it.
+//! Sheets at the border of the volume, with one of their faces beyond it.
 
 use phantoms::{Frame, Phantom, Shape, Slab, Thickness, Topology};
 
-use crate::phantoms_known::judged_phantom;
+use crate::phantoms_known::{judged, judged_phantom};
 
 const SIDE: usize = 64;
 const RADIUS: f64 = 20.0;
@@ -38,4 +38,16 @@ fn a_vesicle_whose_middle_turns_back_below_the_border_is_closed() {
             assert!(report.max_error < 0.6, "{below} below: {report}");
         }
     }
+}
+
+#[test]
+fn nothing_of_a_sheet_is_lost_in_corners_and_along_edges_of_the_volume() {
+    // Nothing but the border cuts off a corner's piece of 13 square voxels here,
+    let (.., report) = judged("gyroid", 3, false);
+    assert_eq!(report.connectivity.topology.components, 2, "{report}");
+    assert!(report.farthest < 1.1, "{report}");
+    // and the contour tears beside an edge.
+    let (.., report) = judged("gyroid", 6, false);
+    assert!(report.farthest < 1.0, "{report}");
+    assert_eq!(report.self_intersections, 0, "{report}");
 }
