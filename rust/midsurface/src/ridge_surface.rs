@@ -58,13 +58,15 @@ const SETTLINGS: usize = 3;
 /// Rings of voxels that sheets are extended by, at most.
 const RINGS: u8 = 12;
 /// The filters that flatten terraces: shorter waves than for lines, since midway points have fewer
-/// terraces, and gently, since membranes have bends of their own, but for where terraces are long.
+/// terraces, and gently, since membranes have bends of their own, but for where terraces are long: whether
+/// they are is told from normals averaged over one of them.
 const FILTERS: Filters = Filters {
     usual: LowPass {
         passband: 0.1,
         degree: 7,
     },
     stronger: Some(STRONG),
+    normals: 8,
 };
 /// The lattice planes that count: terraces along others are lower. Nearness grows from 11°, where
 /// terraces are five voxels long, to 6° and ten.

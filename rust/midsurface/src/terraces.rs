@@ -35,6 +35,7 @@ pub(crate) const OF_LINES: Filters = Filters {
         passband: 0.0125,
         degree: 48,
     }),
+    normals: 4,
 };
 /// A filter for long terraces: it takes waves of less than about fourteen edges.
 pub(crate) const STRONG: LowPass = LowPass {
@@ -49,12 +50,13 @@ pub(crate) struct Filters {
     /// Where the sheet is nearly parallel to a lattice plane, and on boundaries where points move
     /// freely; `None`: the usual one.
     pub stronger: Option<LowPass>,
+    /// Passes that smooth the normals along which heights are measured, and which tell how near to a
+    /// lattice plane the sheet is: over few of them it seems to lean more where a terrace ends.
+    pub normals: usize,
 }
 
 /// No point moves by more than this share of its line's edges: nearly half a voxel.
 const MOST: f64 = 0.3;
-/// Passes that smooth the normals along which heights are measured.
-const SMOOTH_NORMALS: usize = 4;
 /// Towards fixed points the bound on the moves shrinks to nothing over so many rings of points.
 const RINGS: u8 = 6;
 /// Points handed to a worker at a time.
@@ -69,7 +71,7 @@ impl Filters {
             Some(filter) => 2 * filter.degree,
             None => 0,
         };
-        2 * self.usual.degree + more + SMOOTH_NORMALS + 2 + PREPARING
+        2 * self.usual.degree + more + self.normals + 2 + PREPARING
     }
 
     /// The same for slices that lie farther apart, whose terraces are longer: passbands are divided
@@ -78,6 +80,7 @@ impl Filters {
         Self {
             usual: self.usual.on_spacing(h),
             stronger: self.stronger.map(|f| f.on_spacing(h)),
+            ..self
         }
     }
 }
@@ -206,7 +209,7 @@ fn moves(
     (filters, lattice): (Filters, &[LatticePlane]),
     execution: &mut Execution,
 ) -> Result<Vec<f64>> {
-    let smoothed = neighbours.smooth_normals(normals, execution)?;
+    let smoothed = neighbours.smooth_normals(normals, filters.normals, execution)?;
     let mut heights: Vec<f64> = zeros(points.len())?;
     execution.fill(&mut heights, PIECE, |piece, out| {
         for (i, out) in out.iter_mut().enumerate() {
@@ -357,10 +360,15 @@ impl Neighbours {
     }
 
     /// Normals averaged over some rings, in which terraces do not show.
-    fn smooth_normals(&self, normals: &[Vec3], execution: &mut Execution) -> Result<Vec<Vec3>> {
+    fn smooth_normals(
+        &self,
+        normals: &[Vec3],
+        passes: usize,
+        execution: &mut Execution,
+    ) -> Result<Vec<Vec3>> {
         let mut smooth = collected(normals.iter().copied())?;
         let mut next: Vec<Vec3> = zeros(normals.len())?;
-        for _ in 0..SMOOTH_NORMALS {
+        for _ in 0..passes {
             execution.fill(&mut next, PIECE, |piece, out| {
                 for (i, out) in out.iter_mut().enumerate() {
                     let p = piece * PIECE + i;
