@@ -85,8 +85,10 @@ fn figures(mesh: &Mesh) -> Statistics {
 }
 
 /// Asserts that a mesh is as near to where it should be as the whole's: in the mean square, but for the
-/// farthest hundredth, which a few points at rims decide, and at its farthest point.
+/// farthest hundredth, which a few points at rims decide, and at its farthest point. The points of two
+/// meshes lie in different places, and each goes its own way a little (`midway.rs`), by up to .07.
 fn is_as_near(mesh: &Mesh, whole: &Mesh, distance: impl Fn([f64; 3]) -> f64) {
+    const OWN_WAY: f64 = 0.02;
     let figures = |mesh: &Mesh| {
         let points = mesh.points.iter();
         let mut off: Vec<f64> = points.map(|p| distance(p.map(f64::from))).collect();
@@ -95,9 +97,12 @@ fn is_as_near(mesh: &Mesh, whole: &Mesh, distance: impl Fn([f64; 3]) -> f64) {
         let square = most.iter().map(|v| v * v).sum::<f64>() / most.len() as f64;
         [square.sqrt(), off[off.len() - 1]]
     };
-    for (own, of_whole) in figures(mesh).into_iter().zip(figures(whole)) {
-        assert!(own < 1.02 * of_whole, "{own} not {of_whole}");
-    }
+    let ([own, farthest], [of_whole, farthest_of_whole]) = (figures(mesh), figures(whole));
+    assert!(own < 1.02 * of_whole, "{own} not {of_whole}");
+    assert!(
+        farthest < farthest_of_whole + OWN_WAY,
+        "{farthest} not {farthest_of_whole}"
+    );
 }
 
 fn sphere(p: [f64; 3]) -> f64 {
