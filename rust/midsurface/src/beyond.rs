@@ -117,7 +117,6 @@ fn way_out(normal: Vec3, outward: Vec3) -> Vec3 {
 /// Cuts off what lies beyond the border, and drops the pieces that are hardly more than a triangle
 /// then.
 pub(crate) fn cut_at_border(surface: &mut Surface, last: Vec3) -> Result<()> {
-    let mut is_cut = false;
     for (a, last) in last.into_iter().enumerate() {
         for (border, inward) in [(0.0, 1.0), (last, -1.0)] {
             let depth = |p: &Vec3| inward * (p[a] - border);
@@ -130,13 +129,9 @@ pub(crate) fn cut_at_border(surface: &mut Surface, last: Vec3) -> Result<()> {
             for p in surface.points.iter_mut().filter(|p| depth(p) < ON_BORDER) {
                 p[a] = border;
             }
-            is_cut = true;
         }
     }
-    match is_cut {
-        true => drop_pieces(surface, LEAST),
-        false => Ok(()),
-    }
+    drop_pieces(surface, LEAST)
 }
 
 #[cfg(test)]

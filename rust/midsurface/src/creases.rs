@@ -26,9 +26,10 @@ use crate::region::Region;
 
 /// Rings of points around blind rims that are looked at.
 const RINGS: usize = 8;
-/// A rim nearer to the border of the volume all along, work units, is where the contour ends or tears
-/// before that, and no sheet meets another.
+/// A rim nearer to the border of the volume, work units, within so many points along it, is where the
+/// contour ends or tears before that, and no sheet meets another.
 const BORDER: f64 = 2.0;
+const ALONG_BORDER: usize = 12;
 /// Rounds of averaging normals, and how long their mean is at least where there is no crease.
 const ROUNDS: usize = 3;
 const SMOOTH: f64 = 0.9;
@@ -61,9 +62,11 @@ pub(crate) fn cut_creases(
     let numbers = 0..surface.points.len() as u32;
     let blind = collected(numbers.filter(|&p| is_blind[p as usize]))?;
     let sides = sides(surface, &fans, (&blind, &is_blind))?;
-    let is_inside = |p: &Vec3| label.depth(*p) >= BORDER;
-    let mut goes_inside = collected(surface.points.iter().map(is_inside))?;
-    tell_along(&sides, &mut goes_inside)?;
+    let mut goes_inside: Vec<bool> = zeros(surface.points.len())?;
+    for p in blind.iter().map(|&p| p as usize) {
+        goes_inside[p] = label.depth(surface.points[p]) >= BORDER;
+    }
+    spread_along(&sides, &mut goes_inside, ALONG_BORDER)?;
     let blind = collected(blind.into_iter().filter(|&p| goes_inside[p as usize]))?;
     let mut creases = creases(surface, &fans, &blind)?;
     creases.retain(|seed| fraction_at(label, surface, fraction, seed.point) >= WITHIN);
@@ -113,11 +116,14 @@ fn sides(
     Ok(sides)
 }
 
-/// Lets the points of which something is true tell those along their rims.
-fn tell_along(sides: &[[usize; 2]], is_true: &mut [bool]) -> Result<()> {
-    for _ in 0..ALONG {
+/// Spreads what is true of points to so many more along their rims.
+fn spread_along(sides: &[[usize; 2]], is_true: &mut [bool], points: usize) -> Result<()> {
+    for _ in 0..points {
         let is_news = |side: &&[usize; 2]| is_true[side[0]] != is_true[side[1]];
         let told = collected(sides.iter().filter(is_news).flatten().copied())?;
+        if told.is_empty() {
+            break;
+        }
         told.into_iter().for_each(|p| is_true[p] = true);
     }
     Ok(())
@@ -137,7 +143,7 @@ fn reached_rims(
             is_reached[p] = is_blind[p];
         }
     }
-    tell_along(sides, &mut is_reached)?;
+    spread_along(sides, &mut is_reached, ALONG)?;
     let mut reached = Vec::new();
     for &point in blind {
         if is_reached[point as usize] {

@@ -42,11 +42,11 @@ const WIDEST: f64 = 8.0;
 const DEEP: f64 = 0.5;
 const STEP: f64 = 0.5;
 /// The longest rim of a false hole that has some points on the border of the volume, and of one that has
-/// all of them there, work units: round a lumen of one voxel it is 2π long.
-const AT_BORDER: f64 = 12.0;
-const PIPE: f64 = 4.0;
+/// all of them there, work units: that of a tube around one voxel of lumen is 2π long.
+const LONGEST_AT_BORDER: f64 = 12.0;
+const LONGEST_PIPE: f64 = 4.0;
 /// Normals all round a pipe have a mean shorter than this.
-const FLAT: f64 = 0.7;
+const ALIKE: f64 = 0.7;
 /// Triangles that close a hole turn no farther than this cosine away from the surface at its rim.
 const TURNED: f64 = 0.3;
 /// What passes through a hole does so with no more than this cosine between the normals.
@@ -154,8 +154,8 @@ fn holes(
         }
         let longest = match rim.iter().filter(|&&p| is_on_border(p)).count() {
             0 => f64::INFINITY,
-            on_border if on_border < rim.len() => AT_BORDER,
-            _ => PIPE,
+            on_border if on_border < rim.len() => LONGEST_AT_BORDER,
+            _ => LONGEST_PIPE,
         };
         if at == first && (3..=MOST).contains(&rim.len()) && perimeter(surface, &rim) <= longest {
             push(&mut holes, rim)?;
@@ -210,7 +210,7 @@ impl<'a> Rim<'a> {
         Ok(Self {
             normals,
             depths: collected(places.iter().map(|&p| distance.linear(p)))?,
-            is_pipe: on_border == points.len() && length(sum) < FLAT * points.len() as f64,
+            is_pipe: on_border == points.len() && length(sum) < ALIKE * points.len() as f64,
             surface,
             fans,
             points,

@@ -26,7 +26,7 @@ use crate::look::{look, mean, Seen, AT_BORDER, WHOLE};
 use crate::manifold::Surface;
 use crate::mask::Mask;
 use crate::normals::{average_normals, normal_of_fan};
-use crate::ray::{Inside, Ray, Reach};
+use crate::ray::{both_ways, Inside, Reach};
 use crate::thickness::View;
 
 /// Where the border of the volume holds more than this share of a step along the normal back, what
@@ -96,7 +96,7 @@ impl Label<'_> {
     pub fn faces(&self, part: u32, point: Vec3, normal: Vec3) -> Option<[f64; 2]> {
         let (distance, mask) = (self.distance(part), self.mask);
         let label = Inside { distance, mask };
-        let face = |direction: Vec3| match Ray::new(&label, point, direction).reach() {
+        let face = |direction: Vec3, reach: Reach| match reach {
             Reach::Border => Some(f64::INFINITY),
             Reach::Face(reach) => {
                 // Just before a ray meets a face the outside is about as near.
@@ -105,7 +105,10 @@ impl Label<'_> {
                 (label.distance.linear(there) >= ACROSS * before).then_some(reach)
             }
         };
-        let both = |way: Vec3| Some([face(way)?, face(way.map(|v| -v))?]);
+        let both = |way: Vec3| {
+            let [ahead, behind] = both_ways(&label, point, way);
+            Some([face(way, ahead)?, face(way.map(|v| -v), behind)?])
+        };
         let [ahead, behind] = both(normal)?;
         // Hardly leaning, a sheet is as good as across a line within the border.
         let nearest = ahead.min(behind);

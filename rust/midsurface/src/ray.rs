@@ -17,7 +17,7 @@ const SHORT_OF_FACE: f64 = 1.5;
 pub(crate) const DEEP: f64 = SHORT_OF_FACE + STEP;
 /// Rounds of false position (Illinois): a hundredth of a step and better.
 const ROUNDS: usize = 3;
-/// A mask this near to one half is: a hundredth of a voxel or two.
+/// A mask this near to one half is taken for it: straight through a face, a hundredth of a voxel or two.
 const ENOUGH: f64 = 0.01;
 
 /// How a ray through the label ended, after which length, work units.
@@ -34,7 +34,7 @@ pub(crate) struct Inside<'a> {
 }
 
 /// A ray, in voxels.
-pub(crate) struct Ray<'a> {
+struct Ray<'a> {
     label: &'a Inside<'a>,
     /// The volume's last voxel along each axis.
     last: Vec3,
@@ -43,9 +43,17 @@ pub(crate) struct Ray<'a> {
     direction: Vec3,
 }
 
+/// How the rays from a point along a unit normal and against it end, work units.
+pub(crate) fn both_ways(label: &Inside, from: Vec3, normal: Vec3) -> [Reach; 2] {
+    let ahead = Ray::new(label, from, normal);
+    let behind = Ray::new(label, from, normal.map(|v| -v));
+    let here = ahead.look(0.0);
+    [ahead, behind].map(|ray| ray.reach(here))
+}
+
 impl<'a> Ray<'a> {
     /// A ray from a point in a unit direction, work units, through the label.
-    pub fn new(label: &'a Inside<'a>, from: Vec3, direction: Vec3) -> Self {
+    fn new(label: &'a Inside<'a>, from: Vec3, direction: Vec3) -> Self {
         let Sampler { directory, h, .. } = label.distance;
         let voxels = |v: Vec3| std::array::from_fn(|a| v[a] / h[a]);
         Self {
@@ -56,11 +64,11 @@ impl<'a> Ray<'a> {
         }
     }
 
-    /// Follows the ray until the label or the volume ends.
-    pub fn reach(&self) -> Reach {
+    /// Follows the ray from `here`, what [`Self::look`] gives there, until the label or the volume ends.
+    fn reach(&self, here: Option<(f64, f64)>) -> Reach {
         let most = (2.0 * crate::distance::LARGEST / STEP) as usize;
         let mut t = 0.0;
-        let Some((mut mask, mut depth)) = self.look(t) else {
+        let Some((mut mask, mut depth)) = here else {
             return Reach::Border;
         };
         for _ in 0..most {

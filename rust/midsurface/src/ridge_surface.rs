@@ -66,7 +66,7 @@ const FILTERS: Filters = Filters {
         degree: 7,
     },
     stronger: Some(STRONG),
-    normals: 8,
+    normal_rounds: 8,
 };
 /// The lattice planes that count: terraces along others are lower. Nearness grows from 11°, where
 /// terraces are five voxels long, to 6° and ten.

@@ -1,10 +1,10 @@
 //! Surface → surface without scraps.
 //!
 //! Where sheets meet, or a rim is ragged, the contour leaves small pieces beside the sheet. A part's
-//! largest piece is never one of them: a small label keeps its surface. Nor is what the border of the
-//! volume cuts off all round: of a sheet across a corner of the volume there may be no more. What is cut
-//! later leaves scraps where it was cut, and only there they are looked for: what is far off makes no
-//! difference.
+//! largest piece is never one of them: a small label keeps its surface. Nor is of the contour what the
+//! border of the volume cuts off all round: of a sheet across a corner of the volume there may be no more.
+//! What is cut later leaves scraps where it was cut, and only there they are looked for: what is far off
+//! makes no difference.
 
 use crate::components::DisjointSets;
 use crate::error::{collected, zeros, Result};
@@ -18,7 +18,7 @@ const SCRAP: f64 = 15.0;
 /// Drops the scraps of a surface, whose points have their parts as sources; the volume's last voxel is
 /// at `last`.
 pub(crate) fn drop_scraps(surface: &mut Surface, last: Vec3) -> Result<()> {
-    drop_if(surface, SCRAP, |_| true, Some(last))
+    drop_small(surface, SCRAP, |_| true, Some(last))
 }
 
 /// The same among the pieces of which a point `is_near` a cut.
@@ -26,15 +26,17 @@ pub(crate) fn drop_scraps_near(
     surface: &mut Surface,
     is_near: impl Fn(usize) -> bool,
 ) -> Result<()> {
-    drop_if(surface, SCRAP, is_near, None)
+    drop_small(surface, SCRAP, is_near, None)
 }
 
 /// Drops the pieces smaller than this, square work units, wherever they end.
 pub(crate) fn drop_pieces(surface: &mut Surface, scrap: f64) -> Result<()> {
-    drop_if(surface, scrap, |_| true, None)
+    drop_small(surface, scrap, |_| true, None)
 }
 
-fn drop_if(
+/// Drops pieces smaller than `scrap` that are near a cut, but for those that the border of a volume with this
+/// `last` voxel cuts off.
+fn drop_small(
     surface: &mut Surface,
     scrap: f64,
     is_near: impl Fn(usize) -> bool,
@@ -73,7 +75,8 @@ fn drop_if(
     Ok(())
 }
 
-/// Keeps those of the pieces that would go that end, and nowhere but on the border of the volume.
+/// Keeps those of the pieces that would go that end nowhere but on the border of the volume, and there
+/// on several sides of it: a cap on one of them may be a scrap.
 fn keep_cut_off(
     surface: &Surface,
     pieces: &mut DisjointSets,
@@ -88,15 +91,18 @@ fn keep_cut_off(
     }
     let edges = Edges::of_triangles(triangles, &small, surface.points.len())?;
     let border = |p: u32| on_border(surface.points[p as usize], last);
-    let mut ends: Vec<bool> = zeros(surface.points.len())?;
+    let mut ends_on: Vec<[bool; 3]> = zeros(surface.points.len())?;
     let mut ends_within: Vec<bool> = zeros(surface.points.len())?;
     for (a, b, _) in edges.groups().filter(|(.., group)| group.len() == 1) {
         let piece = pieces.find(a as usize);
-        ends[piece] = true;
-        ends_within[piece] |= !border(a).iter().zip(border(b)).any(|(a, b)| *a && b);
+        let [of_a, of_b] = [a, b].map(border);
+        let on: [bool; 3] = std::array::from_fn(|k| of_a[k] && of_b[k]);
+        ends_within[piece] |= on == [false; 3];
+        ends_on[piece] = std::array::from_fn(|k| ends_on[piece][k] || on[k]);
     }
-    for ((goes, ends), ends_within) in goes.iter_mut().zip(ends).zip(ends_within) {
-        *goes &= !ends || ends_within;
+    for ((goes, ends_on), ends_within) in goes.iter_mut().zip(ends_on).zip(ends_within) {
+        let sides = ends_on.iter().filter(|on| **on).count();
+        *goes &= sides < 2 || ends_within;
     }
     Ok(())
 }
@@ -135,12 +141,13 @@ mod tests {
     fn what_the_border_cuts_off_all_round_stays() {
         let mut surface = Surface::default();
         add_square(&mut surface, 0, 9.0);
-        // A sheet across the corner of the volume, the same but for a rim within, and a closed one.
-        for last in [[3.0, 0.0, 0.0], [3.0, 0.5, 0.0]] {
+        // A sheet across the corner of the volume, the same but for a rim within, one that lies on one
+        // border, and a closed one.
+        for corner in [[3.0, 0.0, 0.0], [3.0, 0.5, 0.0], [0.0, 5.0, 5.0]] {
             let first = surface.points.len() as u32;
             surface
                 .points
-                .extend([last, [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]]);
+                .extend([corner, [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]]);
             surface.triangles.push([0, 1, 2].map(|p| first + p));
             surface.source.extend([0; 3]);
         }

@@ -35,7 +35,7 @@ pub(crate) const OF_LINES: Filters = Filters {
         passband: 0.0125,
         degree: 48,
     }),
-    normals: 4,
+    normal_rounds: 4,
 };
 /// A filter for long terraces: it takes waves of less than about fourteen edges.
 pub(crate) const STRONG: LowPass = LowPass {
@@ -52,7 +52,7 @@ pub(crate) struct Filters {
     pub stronger: Option<LowPass>,
     /// Passes that smooth the normals along which heights are measured, and which tell how near to a
     /// lattice plane the sheet is: over few of them it seems to lean more where a terrace ends.
-    pub normals: usize,
+    pub normal_rounds: usize,
 }
 
 /// No point moves by more than this share of its line's edges: nearly half a voxel.
@@ -71,7 +71,7 @@ impl Filters {
             Some(filter) => 2 * filter.degree,
             None => 0,
         };
-        2 * self.usual.degree + more + self.normals + 2 + PREPARING
+        2 * self.usual.degree + more + self.normal_rounds + 2 + PREPARING
     }
 
     /// The same for slices that lie farther apart, whose terraces are longer: passbands are divided
@@ -209,7 +209,7 @@ fn moves(
     (filters, lattice): (Filters, &[LatticePlane]),
     execution: &mut Execution,
 ) -> Result<Vec<f64>> {
-    let smoothed = neighbours.smooth_normals(normals, filters.normals, execution)?;
+    let smoothed = neighbours.smooth_normals(normals, filters.normal_rounds, execution)?;
     let mut heights: Vec<f64> = zeros(points.len())?;
     execution.fill(&mut heights, PIECE, |piece, out| {
         for (i, out) in out.iter_mut().enumerate() {

@@ -3,7 +3,7 @@
 
 use crate::grid::{last_voxel, length, unit, Vec3};
 use crate::interpolation::Sampler;
-use crate::ray::{Inside, Ray, Reach};
+use crate::ray::{both_ways, Inside, Reach};
 
 /// The thickness that a point beside the label is given, work units: others are divided by it.
 const LEAST: f64 = 0.01;
@@ -30,8 +30,7 @@ impl View {
     /// the border: across a sheet that is flat nearby, every line's middle is on the mid-surface.
     pub fn new(label: &Inside, from: Vec3, normal: Vec3) -> Self {
         let distance = &label.distance;
-        let look =
-            |v: Vec3| [v, v.map(|x| -x)].map(|direction| Ray::new(label, from, direction).reach());
+        let look = |way: Vec3| both_ways(label, from, way);
         let ahead = look(normal);
         let about = match ahead {
             [Reach::Face(a), Reach::Face(b)] => a + b,

@@ -45,7 +45,7 @@ const LEAD_REACH: usize = 32;
 const ACROSS: f64 = 8.0;
 /// Edge lengths around a tile from which its finished mesh comes: the rings of points that the low-pass
 /// looks over and those for normals, rims and what they touch.
-const FINISH_REACH: f64 = 64.0;
+const FINISH_REACH: f64 = 68.0;
 /// Shifts of the grid of tiles in which the mesh is remeshed, in sides: across the seams of those before.
 const SHIFTS: [f64; 3] = [0.0, 0.5, 0.25];
 

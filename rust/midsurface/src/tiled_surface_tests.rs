@@ -86,7 +86,7 @@ fn figures(mesh: &Mesh) -> Statistics {
 
 /// Asserts that a mesh is as near to where it should be as the whole's: in the mean square, but for the
 /// farthest hundredth, which a few points at rims decide, and at its farthest point. The points of two
-/// meshes lie in different places, and each goes its own way a little (`midway.rs`), by up to .07.
+/// meshes lie in different places, and each goes its own way a little (`midway.rs`).
 fn is_as_near(mesh: &Mesh, whole: &Mesh, distance: impl Fn([f64; 3]) -> f64) {
     const OWN_WAY: f64 = 0.02;
     let figures = |mesh: &Mesh| {

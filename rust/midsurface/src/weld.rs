@@ -2,8 +2,9 @@
 //!
 //! Where a sheet passes close by a voxel, cubes around it have corners that all but coincide, with
 //! slivers between them whose normals say nothing. Whatever comes later relies on normals, so their
-//! short edges are drawn together. The link condition (Dey et al. 1999) keeps the topology, and no
-//! triangle may turn over; an edge for which either fails stays.
+//! short edges are drawn together, as are those that a cut at the border of the volume leaves on it. The
+//! link condition (Dey et al. 1999) keeps the topology, and no triangle may turn over; an edge for which
+//! either fails stays.
 
 use rayon::prelude::*;
 
@@ -49,7 +50,7 @@ pub(crate) fn weld_at_border(
 }
 
 /// Draws short edges together whose ends are both `wanted`, to a `place` that is given two points of the
-/// boundary or two others.
+/// boundary or two others; none where the edge has to stay.
 fn weld_some(
     surface: &mut Surface,
     wanted: impl Fn(Vec3) -> bool + Sync,

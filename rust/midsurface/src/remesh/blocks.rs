@@ -1,7 +1,7 @@
 //! The surface cut into blocks, so that threads can work on it at once.
 //!
 //! A triangle belongs to the block of the global grid that its centre is in. A block is worked on
-//! with the points it shares with other blocks frozen; the next pass shifts the grid, so that
+//! with the points it shares with other blocks frozen; the next pass, if there is one, shifts the grid, so that
 //! they come to lie inside. What happens in a block depends on what is in it, never on the other
 //! blocks or on the order of work.
 

@@ -73,13 +73,14 @@ pub(crate) enum Before {
     Remeshed,
 }
 
-/// Side of a block in edge lengths, of the coarser mesh.
+/// Side of a block in edge lengths.
 const BLOCK: f64 = 20.0;
 /// Shifts of the grid of blocks from pass to pass, in sides along each axis.
 const SHIFTS: [f64; 5] = [0.0, 0.5, 0.25, 0.75, 0.4];
 /// What is reached at once: about twice the edges of a surface through voxels of size 1.
 const FINE: f64 = 1.8;
-/// Passes at twice the final edge length, and at the final one: most of the work is done in the first.
+/// Passes at twice the final edge length, where most of the work is done, and at the final one. In that
+/// blocks are as wide as before: few points lie between them, which keep what subdividing gave them.
 const COARSE_PASSES: usize = 4;
 const FINE_PASSES: usize = 1;
 /// Passes over what is remeshed already.
@@ -119,9 +120,9 @@ pub(crate) fn remesh_some(
         return Ok(Remeshed::default());
     }
     let twice = 2.0 * edge_length;
-    let (coarse, fine) = match before {
-        Before::Any => (schedule(twice), FINE_PASSES),
-        Before::Remeshed => (Vec::new(), MENDING_PASSES),
+    let (coarse, fine, side) = match before {
+        Before::Any => (schedule(twice), FINE_PASSES, BLOCK * twice),
+        Before::Remeshed => (Vec::new(), MENDING_PASSES, BLOCK * edge_length),
     };
     let all = coarse.len() + fine;
     let over_blocks = 2 * all;
@@ -136,7 +137,7 @@ pub(crate) fn remesh_some(
         surface = subdivide(&surface, &reference, execution)?;
     }
     for number in coarse.len()..all {
-        let blocks = Blocks::new(&surface, BLOCK * twice, shift(number), execution)?;
+        let blocks = Blocks::new(&surface, side, shift(number), execution)?;
         let scale = (1.0, edge_length);
         surface = blocks.work(&surface, &reference, scale, execution, |patch| {
             improve(patch)?;
