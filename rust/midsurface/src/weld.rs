@@ -24,8 +24,7 @@ const TURNED: f64 = 0.3;
 
 /// Draws the short edges of a consistently wound 2-manifold together.
 pub(crate) fn weld(surface: &mut Surface, execution: &mut Execution) -> Result<()> {
-    let middle = |p: Vec3, q: Vec3| Some(along(p, 0.5, sub(q, p)));
-    weld_some(surface, |_| true, middle, execution)
+    weld_some(surface, |_| true, |p, q| Some(middle(p, q)), execution)
 }
 
 /// The same for edges that a cut at the border of the volume has left there: what lies on two borders
@@ -39,7 +38,7 @@ pub(crate) fn weld_at_border(
         let [of_p, of_q] = [p, q].map(|p| on_border(p, last));
         let holds = |all: [bool; 3], some: [bool; 3]| (0..3).all(|a| all[a] || !some[a]);
         match (holds(of_p, of_q), holds(of_q, of_p)) {
-            (true, true) => Some(along(p, 0.5, sub(q, p))),
+            (true, true) => Some(middle(p, q)),
             (true, false) => Some(p),
             (false, true) => Some(q),
             (false, false) => None,
@@ -47,6 +46,10 @@ pub(crate) fn weld_at_border(
     };
     let is_at_border = |p: Vec3| on_border(p, last).contains(&true);
     weld_some(surface, is_at_border, place, execution)
+}
+
+fn middle(p: Vec3, q: Vec3) -> Vec3 {
+    along(p, 0.5, sub(q, p))
 }
 
 /// Draws short edges together whose ends are both `wanted`, to a `place` that is given two points of the
@@ -88,7 +91,7 @@ fn short_edges(
     wanted: impl Fn(Vec3) -> bool + Sync,
     execution: &Execution,
 ) -> Result<Vec<u32>> {
-    let is_one = |e: u32| {
+    let is_wanted = |e: u32| {
         let (a, b) = ends(&surface.triangles, e);
         let [p, q] = [a, b].map(|p| surface.points[p as usize]);
         squared_distance(p, q) < SHORT * SHORT && wanted(p) && wanted(q)
@@ -96,7 +99,7 @@ fn short_edges(
     let mut is_short: Vec<bool> = zeros(3 * surface.triangles.len())?;
     execution.in_pool(|| {
         let all = is_short.par_iter_mut().enumerate();
-        all.for_each(|(e, is_short)| *is_short = is_one(e as u32));
+        all.for_each(|(e, is_short)| *is_short = is_wanted(e as u32));
     });
     let all = 0..is_short.len() as u32;
     let mut short = collected(all.filter(|&e| is_short[e as usize]))?;
