@@ -10,16 +10,20 @@ use crate::touching::TOUCHING;
 /// cells a triangle.
 const SIDE: f64 = 1.5;
 const CELLS: usize = 4;
-/// The triangles of a surface within `reach` of `some` of them.
-pub(crate) fn near(surface: &Surface, some: &[u32], reach: f64) -> Result<Vec<u32>> {
-    let cells = Cells::around(surface, some, reach);
-    let wider = |t: u32| {
-        let [low, high] = bounds(surface, t);
-        [low.map(|v| v - reach), high.map(|v| v + reach)]
-    };
+
+/// A box along the axes: its lower and upper corner.
+pub(crate) type Bounds = [Vec3; 2];
+
+/// The triangles of a surface within `reach` of some boxes.
+pub(crate) fn near(surface: &Surface, boxes: &[Bounds], reach: f64) -> Result<Vec<u32>> {
+    let cells = Cells::around(boxes, reach, surface);
+    let wider = |[low, high]: Bounds| [low.map(|v| v - reach), high.map(|v| v + reach)];
     let entries = || {
-        let of = |&t: &u32| cells.reached_by(wider(t)).map(move |cell| (cell, t));
-        some.iter().flat_map(of)
+        let of = |&own: &Bounds| {
+            let own = wider(own);
+            cells.reached_by(own).map(move |cell| (cell, own))
+        };
+        boxes.iter().flat_map(of)
     };
     let in_cell = Buckets::new(cells.count(), entries)?;
     let is_near = |&t: &u32| {
@@ -27,14 +31,19 @@ pub(crate) fn near(surface: &Surface, some: &[u32], reach: f64) -> Result<Vec<u3
         let mut around = cells
             .reached_by(own)
             .flat_map(|cell| in_cell.of(cell as usize));
-        around.any(|&other| overlap(own, wider(other)))
+        around.any(|&other| overlap(own, other))
     };
     let all = 0..surface.triangles.len() as u32;
     collected(all.filter(is_near))
 }
 
-/// Lower and upper corner of what encloses a triangle, with room for touching.
-pub(crate) fn bounds(surface: &Surface, t: u32) -> [Vec3; 2] {
+/// What encloses each of some triangles, with room for touching.
+pub(crate) fn all_bounds(surface: &Surface, some: &[u32]) -> Result<Vec<Bounds>> {
+    collected(some.iter().map(|&t| bounds(surface, t)))
+}
+
+/// What encloses a triangle, with room for touching.
+pub(crate) fn bounds(surface: &Surface, t: u32) -> Bounds {
     let [a, b, c] = surface.triangles[t as usize].map(|p| surface.points[p as usize]);
     [
         std::array::from_fn(|k| a[k].min(b[k]).min(c[k]) - TOUCHING),
@@ -42,12 +51,12 @@ pub(crate) fn bounds(surface: &Surface, t: u32) -> [Vec3; 2] {
     ]
 }
 
-/// Whether two boxes, each by its lower and upper corner, have a point in common.
-pub(crate) fn overlap([low, high]: [Vec3; 2], [other_low, other_high]: [Vec3; 2]) -> bool {
+/// Whether two boxes have a point in common.
+pub(crate) fn overlap([low, high]: Bounds, [other_low, other_high]: Bounds) -> bool {
     (0..3).all(|k| high[k] >= other_low[k] && other_high[k] >= low[k])
 }
 
-/// A grid of cubes around some triangles.
+/// A grid of cubes around some boxes.
 pub(crate) struct Cells {
     low: Vec3,
     side: f64,
@@ -55,12 +64,11 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// A grid that reaches `margin` beyond the triangles.
-    pub fn around(surface: &Surface, triangles: &[u32], margin: f64) -> Self {
+    /// A grid that reaches `margin` beyond boxes as large as a surface's triangles, with cells for these.
+    pub fn around(boxes: &[Bounds], margin: f64, surface: &Surface) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         let mut size = 0.0;
-        for &t in triangles {
-            let [from, to] = bounds(surface, t);
+        for [from, to] in boxes {
             low = std::array::from_fn(|k| low[k].min(from[k]));
             high = std::array::from_fn(|k| high[k].max(to[k]));
             size += (0..3).map(|k| to[k] - from[k]).fold(0.0, f64::max);
@@ -69,7 +77,7 @@ impl Cells {
         let extent = sub(high.map(|v| v + margin), low);
         let most = CELLS * surface.triangles.len();
         let least = (extent.iter().product::<f64>() / most as f64).cbrt();
-        let side = least.max(SIDE * size / triangles.len() as f64);
+        let side = least.max(SIDE * size / boxes.len() as f64);
         Self {
             low,
             side,
@@ -94,7 +102,7 @@ impl Cells {
     }
 
     /// The cells that a box reaches into; none where it lies beyond the grid.
-    pub fn reached_by(&self, [low, high]: [Vec3; 2]) -> impl Iterator<Item = u32> {
+    pub fn reached_by(&self, [low, high]: Bounds) -> impl Iterator<Item = u32> {
         let [nx, ny, nz] = self.dimensions;
         let range = |k: usize, n: usize| {
             let at = |v: f64| floor((v - self.low[k]) / self.side);

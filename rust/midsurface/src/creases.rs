@@ -12,7 +12,7 @@
 //! from blind rims, such as the edge of a fold, stays as it is.
 
 use crate::buckets::Buckets;
-use crate::cells::{bounds, near, Cells};
+use crate::cells::{all_bounds, bounds, near, Cells};
 use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, length, sub, unit, Vec3};
@@ -166,7 +166,8 @@ fn near_seeds(surface: &Surface, fans: &Fans, seeds: &[Seed], far: f64) -> Resul
     let mut own = collected(half_edges.map(|e| e / 3))?;
     own.sort_unstable();
     own.dedup();
-    let cells = Cells::around(surface, &own, far);
+    let boxes = all_bounds(surface, &own)?;
+    let cells = Cells::around(&boxes, far, surface);
     let in_cell = Buckets::new(cells.count(), || {
         let of = |s: usize| {
             let cells = cells.reached_by([place(seeds[s].point); 2]);
@@ -180,7 +181,7 @@ fn near_seeds(surface: &Surface, fans: &Fans, seeds: &[Seed], far: f64) -> Resul
         dot(step, step) <= far * far && seed.way.is_none_or(is_ahead)
     };
     let source = |p: u32| surface.source[p as usize];
-    for t in near(surface, &own, far)? {
+    for t in near(surface, &boxes, far)? {
         let corners = surface.triangles[t as usize];
         let [low, high] = bounds(surface, t);
         let mut cells = cells.reached_by([low.map(|v| v - far), high.map(|v| v + far)]);

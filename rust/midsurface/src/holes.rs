@@ -18,7 +18,7 @@
 use std::ops::Range;
 
 use crate::buckets::Buckets;
-use crate::cells::{bounds, near, overlap, Cells};
+use crate::cells::{all_bounds, bounds, near, overlap, Cells};
 use crate::error::{collected, extend, filled, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, cross, dot, length, squared_distance, sub, unit, Vec3};
@@ -367,14 +367,15 @@ fn normal(surface: &Surface, t: u32) -> Vec3 {
 /// The triangles of the same part that those from `first` on touch, in pairs, ascending.
 fn crossed(surface: &Surface, first: usize) -> Result<Vec<[u32; 2]>> {
     let own = collected(first as u32..surface.triangles.len() as u32)?;
-    let cells = Cells::around(surface, &own, 0.0);
+    let boxes = all_bounds(surface, &own)?;
+    let cells = Cells::around(&boxes, 0.0, surface);
     let in_cell = Buckets::new(cells.count(), || {
         let of = |&t: &u32| cells.reached_by(bounds(surface, t)).map(move |c| (c, t));
         own.iter().flat_map(of)
     })?;
     let source = |t: u32| surface.source[surface.triangles[t as usize][0] as usize];
     let mut pairs = Vec::new();
-    for other in near(surface, &own, 0.0)? {
+    for other in near(surface, &boxes, 0.0)? {
         let reached = cells.reached_by(bounds(surface, other));
         for &t in reached.flat_map(|cell| in_cell.of(cell as usize)) {
             let [a, b] = [t, other].map(|t| surface.triangles[t as usize]);

@@ -55,7 +55,7 @@ const SIGHT: f32 = 0.8;
 const PIECE: usize = 1024;
 /// The share of the way that a point of the finished mesh goes by itself, and from where on what it
 /// sees is a bump of noise, work units: a voxel flipped on a face shows as half of one.
-const OWN_SHARE: f64 = 0.17;
+const OWN_SHARE: f64 = 0.155;
 const BUMP: f64 = 0.4;
 /// Passes over the points that [`move_closer`] makes, for its progress.
 pub(crate) const CLOSER_PASSES: usize = 1;

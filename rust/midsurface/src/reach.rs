@@ -10,7 +10,7 @@
 //! whose ways lead towards each other: their mean would lead out of the sheet, to the one beside it.
 
 use crate::buckets::Buckets;
-use crate::cells::{bounds, near, Cells};
+use crate::cells::{all_bounds, bounds, near, Cells};
 use crate::error::{collected, filled, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
@@ -278,8 +278,9 @@ fn look_ahead(
     let mut at_rims = collected(points.map(|e| e / 3))?;
     at_rims.sort_unstable();
     at_rims.dedup();
-    let cells = Cells::around(surface, &at_rims, AHEAD);
-    let near = near(surface, &at_rims, AHEAD)?;
+    let boxes = all_bounds(surface, &at_rims)?;
+    let cells = Cells::around(&boxes, AHEAD, surface);
+    let near = near(surface, &boxes, AHEAD)?;
     let sheets = Buckets::new(cells.count(), || {
         let of = |&t: &u32| cells.reached_by(bounds(surface, t)).map(move |c| (c, t));
         near.iter().flat_map(of)

@@ -11,7 +11,7 @@
 //! where nothing touches.
 
 use crate::buckets::Buckets;
-use crate::cells::{bounds, near, overlap, Cells};
+use crate::cells::{all_bounds, bounds, near, overlap, Bounds, Cells};
 use crate::error::{collected, extend, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, cross, dot, sub, Vec3};
@@ -32,6 +32,9 @@ const CUTS: usize = 24;
 const WIDENED: usize = 6;
 /// How far from a rim that is drawn back others may begin to touch, in lengths of an edge.
 const REACH: f64 = 1.5;
+/// How far from what has changed triangles are looked at again, in lengths of an edge: as far as they are
+/// near a rim that a cut has made, and what these may touch.
+const AGAIN: f64 = 6.0;
 /// Rings of points beside a rim whose triangles are looked at, too: what is led on to where sheets meet
 /// may crumple behind its rim.
 type Ring = u8;
@@ -59,27 +62,32 @@ pub(crate) fn remove_self_intersections(
     (edge, last): (f64, Vec3),
     execution: &mut Execution,
 ) -> Result<Fans> {
+    let mut among = collected(0..surface.triangles.len() as u32)?;
     for cut in 1..=CUTS {
         let on_rim = on_rim(surface, &fans, execution)?;
         let rings = rings(surface, &on_rim)?;
-        let all = collected(0..surface.triangles.len() as u32)?;
-        let touching = touching(surface, &rings, &all, component, execution)?;
+        let mut touching = touching(surface, &rings, &among, component, execution)?;
         if touching.is_empty() {
             break;
         }
-        let near = near(surface, touching.as_flattened(), REACH * edge)?;
+        let mut changing = all_bounds(surface, touching.as_flattened())?;
+        rims_first(surface, &rings, &mut touching);
+        let at_rims = all_bounds(surface, touching.as_flattened())?;
+        let near = near(surface, &at_rims, REACH * edge)?;
         let rims = (&fans, on_rim.as_slice(), rings.as_slice());
         let (left, pressed) = draw_back(surface, rims, &near, touching, component, execution)?;
         // What touches after that is drawn back in the next round; the last rounds only draw back.
         if cut <= WIDENED {
-            widen(surface, &fans, last, pressed)?;
+            let widened = widen(surface, &fans, last, pressed)?;
+            extend(&mut changing, widened.iter().map(|&t| bounds(surface, t)))?;
         }
-        if left.is_empty() {
-            continue;
+        if !left.is_empty() {
+            let all = cut == CUTS;
+            cut_away(surface, (&fans, &on_rim), &left, all, execution)?;
+            fans = Fans::new(&surface.triangles, surface.points.len())?;
         }
-        let all = cut == CUTS;
-        cut_away(surface, (&fans, &on_rim), &left, all, execution)?;
-        fans = Fans::new(&surface.triangles, surface.points.len())?;
+        // What was apart stays apart but for where the surface has changed.
+        among = self::near(surface, &changing, AGAIN * edge)?;
     }
     Ok(fans)
 }
@@ -108,7 +116,7 @@ fn rings(surface: &Surface, on_rim: &[bool]) -> Result<Vec<Ring>> {
     Ok(rings)
 }
 
-/// The pairs among some triangles that touch, one of them at a rim; where there is none, near one.
+/// The pairs among some triangles that touch, one of them near a rim, ascending.
 fn touching(
     surface: &Surface,
     rings: &[Ring],
@@ -116,24 +124,19 @@ fn touching(
     component: &(impl Fn(u32) -> u32 + Sync),
     execution: &mut Execution,
 ) -> Result<Vec<[u32; 2]>> {
-    let ring = |t: u32| {
-        let corners = surface.triangles[t as usize].iter();
-        corners.map(|&p| rings[p as usize]).min().unwrap_or(FAR)
-    };
-    let is_near_rim = |t: u32| ring(t) < FAR;
-    let is_at_rim = |pair: [u32; 2]| pair.iter().any(|&t| ring(t) == 0);
-    let at_rim = collected(among.iter().copied().filter(|&t| is_near_rim(t)))?;
-    if at_rim.is_empty() {
+    let is_near_rim = |t: u32| ring(surface, rings, t) < FAR;
+    let near_rims = collected(among.iter().copied().filter(|&t| is_near_rim(t)))?;
+    if near_rims.is_empty() {
         return Ok(Vec::new());
     }
-    let cells = Cells::around(surface, &at_rim, 0.0);
+    let boxes = all_bounds(surface, &near_rims)?;
+    let cells = Cells::around(&boxes, 0.0, surface);
     let entries = || {
-        let of = |&t: &u32| {
-            cells
-                .reached_by(bounds(surface, t))
-                .map(move |cell| (cell, t))
+        let of = |(i, own): (usize, &Bounds)| {
+            let reached = cells.reached_by(*own);
+            reached.map(move |cell| (cell, i as u32))
         };
-        at_rim.iter().flat_map(of)
+        boxes.iter().enumerate().flat_map(of)
     };
     let in_cell = Buckets::new(cells.count(), entries)?;
     let is_same = |p: u32, q: u32| {
@@ -144,7 +147,7 @@ fn touching(
         if !is_same(a[0], b[0]) {
             return false;
         }
-        if is_at_rim([t, rim]) {
+        if [t, rim].iter().any(|&t| ring(surface, rings, t) == 0) {
             return touch(a, b, &surface.points, TOUCHING);
         }
         let meet = a.iter().any(|p| b.contains(p));
@@ -161,15 +164,15 @@ fn touching(
                 // Two near rims meet twice.
                 let is_near_rim = is_near_rim(t);
                 for cell in cells.reached_by(own) {
-                    let rims = in_cell.of(cell as usize).iter();
-                    let rims = rims.filter(|&&rim| {
-                        let other = bounds(surface, rim);
-                        (t < rim || !is_near_rim)
-                            && overlap(own, other)
+                    let rims = in_cell.of(cell as usize).iter().filter_map(|&i| {
+                        let (rim, other) = (near_rims[i as usize], boxes[i as usize]);
+                        let is_met = overlap(own, other)
+                            && (t < rim || !is_near_rim)
                             && cells.is_first_of_both(cell, [own[0], other[0]])
-                            && touches(t, rim)
+                            && touches(t, rim);
+                        is_met.then_some([t, rim])
                     });
-                    extend(&mut found, rims.map(|&rim| [t, rim]))?;
+                    extend(&mut found, rims)?;
                 }
             }
             Ok(found)
@@ -177,11 +180,22 @@ fn touching(
         |found: Result<_>| extend(&mut pairs, found?),
     )?;
     pairs.sort_unstable();
-    // What touches behind a rim may be rid of together with that.
-    if pairs.iter().any(|pair| is_at_rim(*pair)) {
-        pairs.retain(|pair| is_at_rim(*pair));
-    }
     Ok(pairs)
+}
+
+/// Keeps the pairs with a triangle at a rim, if there are any: what touches behind a rim may be rid of
+/// together with that.
+fn rims_first(surface: &Surface, rings: &[Ring], pairs: &mut Vec<[u32; 2]>) {
+    let is_at_rim = |pair: &[u32; 2]| pair.iter().any(|&t| ring(surface, rings, t) == 0);
+    if pairs.iter().any(is_at_rim) {
+        pairs.retain(is_at_rim);
+    }
+}
+
+/// How far a triangle is from a rim, counted in edges.
+fn ring(surface: &Surface, rings: &[Ring], t: u32) -> Ring {
+    let corners = surface.triangles[t as usize].iter();
+    corners.map(|&p| rings[p as usize]).min().unwrap_or(FAR)
 }
 
 /// Whether two triangles face nearly the same way: such that share a point cross only where one between
@@ -230,6 +244,7 @@ fn draw_back(
             }
         }
         touching = self::touching(surface, rings, near, component, execution)?;
+        rims_first(surface, rings, &mut touching);
         if touching.is_empty() {
             break;
         }
@@ -386,6 +401,24 @@ mod tests {
         assert_eq!(after.triangles.iter().filter(flat).count(), 2 * 12 * 12);
         let above = |t: &&[u32; 3]| t.iter().all(|&p| after.points[p as usize][2] > 0.5);
         assert!(after.triangles.iter().filter(above).count() >= 2 * 6 * 6);
+    }
+
+    #[test]
+    fn what_crosses_behind_rims_goes_though_rims_touch_elsewhere() {
+        let mut surface = sheets_at(-0.3);
+        add_lattice(&mut surface, [4, 4], |x, y| [50.0 + x, y, 0.0]);
+        let is_peak = |x: f64, y: f64| (x, y) == (2.0, 2.0);
+        add_lattice(&mut surface, [4, 4], |x, y| {
+            [50.1 + x, 0.2 + y, if is_peak(x, y) { 0.5 } else { -0.5 }]
+        });
+        let sheets = |surface: &Surface| {
+            let is_far = |t: &&[u32; 3]| surface.points[t[0] as usize][0] > 40.0;
+            surface.triangles.iter().filter(is_far).count()
+        };
+        let before = sheets(&surface);
+        let after = uncrossed(surface, 2);
+        assert_eq!(count_touching(&after), 0);
+        assert!(sheets(&after) < before && sheets(&after) > before / 2);
     }
 
     #[test]

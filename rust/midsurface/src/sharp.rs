@@ -50,16 +50,18 @@ pub(crate) fn widen_all(
         },
         |found: Result<Vec<u32>>| extend(&mut sharp, found?),
     )?;
-    widen(surface, fans, last, sharp)
+    widen(surface, fans, last, sharp)?;
+    Ok(())
 }
 
-/// Makes those of some triangles that are sharp less so.
+/// Makes those of some triangles that are sharp less so; returns the triangles that have changed.
 pub(crate) fn widen(
     surface: &mut Surface,
     fans: &Fans,
     last: Vec3,
     mut some: Vec<u32>,
-) -> Result<()> {
+) -> Result<Vec<u32>> {
+    let mut changed = Vec::new();
     for _ in 0..STEPS {
         some.retain(|&t| is_sharp(surface, t));
         let mut corners = collected(some.iter().flat_map(|&t| surface.triangles[t as usize]))?;
@@ -73,8 +75,9 @@ pub(crate) fn widen(
         some = collected(corners.iter().flat_map(|&p| fans.of(p)).map(|&e| e / 3))?;
         some.sort_unstable();
         some.dedup();
+        extend(&mut changed, some.iter().copied())?;
     }
-    Ok(())
+    Ok(changed)
 }
 
 fn is_sharp(surface: &Surface, t: u32) -> bool {

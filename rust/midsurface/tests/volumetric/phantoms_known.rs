@@ -242,7 +242,7 @@ must!(cristae_clean, "cristae", CLEAN);
 must!(cristae_noisy, "cristae", NOISY);
 must!(bent_tube_clean, "bent tube", CLEAN);
 must!(bent_tube_noisy, "bent tube", NOISY);
-falls_short!(sheet_with_many_holes_clean, "sheet with many holes", CLEAN);
+must!(sheet_with_many_holes_clean, "sheet with many holes", CLEAN);
 falls_short!(sheet_with_many_holes_noisy, "sheet with many holes", NOISY);
 must!(junction_t_clean, "junction T", CLEAN);
 must!(junction_t_noisy, "junction T", NOISY);
