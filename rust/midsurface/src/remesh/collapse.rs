@@ -78,7 +78,7 @@ fn squared_share(patch: &Patch, e: u32) -> f64 {
     if patch.frozen[a as usize] || patch.frozen[b as usize] {
         return f64::INFINITY;
     }
-    squared_distance(patch.point(a), patch.point(b)) / patch.wanted(a, b).powi(2)
+    squared_distance(patch.point(a), patch.point(b)) / patch.wanted_of(e).powi(2)
 }
 
 /// Whether v may be drawn into u along half-edge e, which joins them in either direction; fills

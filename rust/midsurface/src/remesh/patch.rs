@@ -54,6 +54,10 @@ impl Vertex {
 /// The most triangles around a point that a step looks at.
 pub(super) const MOST_AROUND: usize = 256;
 
+/// Edges of the boundary are wanted so much shorter: inside, where a point has six edges and the shortest
+/// is collapsed, their mean comes out below what is wanted, and along a curve above that.
+pub(super) const ON_BOUNDARY: f64 = 0.9;
+
 /// A piece of the surface.
 #[derive(Clone)]
 pub(super) struct Patch<'a> {
@@ -151,6 +155,15 @@ impl<'a> Patch<'a> {
     /// Edge length wanted between two points.
     pub fn wanted(&self, a: u32, b: u32) -> f64 {
         0.5 * (self.size(a) + self.size(b))
+    }
+
+    /// Edge length wanted of the edge of a half-edge.
+    pub fn wanted_of(&self, e: u32) -> f64 {
+        let wanted = self.wanted(self.origin(e), self.end(e));
+        match self.twin(e) {
+            NONE => ON_BOUNDARY * wanted,
+            _ => wanted,
+        }
     }
 
     /// The half-edges that leave a point that is not frozen, counter-clockwise. On a boundary the

@@ -1,8 +1,10 @@
-//! Points move along the surface to the middle of their neighbours.
+//! Points move along the surface to the middle of their neighbours, those of the boundary along its curve.
 
-use super::patch::{Kind, Patch, Vertex};
+use super::patch::{Kind, Patch, Vertex, ON_BOUNDARY};
 use super::shape::{faces, squared_sine};
-use crate::grid::{along, dot, sub, Vec3};
+use super::split::LONG;
+use crate::grid::{along, dot, sub, unit, Vec3};
+use crate::halfedge::{previous, NONE};
 
 /// No move makes an angle smaller than this sine's (30°), unless one was there before.
 const SHARP: f64 = 0.5;
@@ -46,7 +48,7 @@ fn moved(patch: &Patch, p: u32, share: f64, ring: &[u32]) -> Option<Vertex> {
             let target = along(vertex.point, share, way);
             Some(patch.reference.vertex(vertex.at, target))
         }
-        Kind::Boundary => slid(patch, p, share),
+        Kind::Boundary => slid(patch, p, share, ring),
         Kind::Corner => None,
     }
 }
@@ -54,10 +56,13 @@ fn moved(patch: &Patch, p: u32, share: f64, ring: &[u32]) -> Option<Vertex> {
 /// The mean of a point's neighbours. Weights by area or length would keep a lattice of stretched
 /// triangles as it is; equal ones pull it towards equal edges.
 fn centre(patch: &Patch, ring: &[u32]) -> Vec3 {
-    let sum = ring.iter().fold([0.0; 3], |sum, &e| {
-        along(sum, 1.0, patch.point(patch.end(e)))
-    });
-    sum.map(|v| v / ring.len() as f64)
+    let ends = ring.iter().map(|&e| patch.end(e));
+    // On a boundary one neighbour is only found backwards.
+    let last = ring.last().filter(|&&e| patch.twin(previous(e)) == NONE);
+    let neighbours = ends.chain(last.map(|&e| patch.opposite(e)));
+    let add = |(sum, count), q| (along(sum, 1.0, patch.point(q)), count + 1.0);
+    let (sum, count) = neighbours.fold(([0.0; 3], 0.0), add);
+    sum.map(|v| v / count)
 }
 
 /// The ways from a boundary point to its neighbours along the curve, back and ahead.
@@ -73,10 +78,15 @@ fn ways_to_neighbours(patch: &Patch, p: u32) -> Option<[f64; 2]> {
     ])
 }
 
-/// A boundary point on its way to the middle between its neighbours along the curve.
-fn slid(patch: &Patch, p: u32, share: f64) -> Option<Vertex> {
+/// A boundary point on its way along the curve to the middle of all its neighbours: held at equal
+/// distances rim points would stretch the triangles behind them. No edge gets too long for the curve.
+fn slid(patch: &Patch, p: u32, share: f64, ring: &[u32]) -> Option<Vertex> {
+    let [before, after] = patch.along_boundary(p)?.map(|q| patch.point(q));
     let [back, ahead] = ways_to_neighbours(patch, p)?;
-    slid_by(patch, p, share * 0.5 * (ahead - back))
+    let longest = (LONG * ON_BOUNDARY * patch.size(p)).max(0.5 * (back + ahead));
+    let way = sub(centre(patch, ring), patch.point(p));
+    let way = share * dot(way, unit(sub(after, before)));
+    slid_by(patch, p, way.max(ahead - longest).min(longest - back))
 }
 
 /// A boundary point that has slid some way along the curve, but not up to a neighbour.

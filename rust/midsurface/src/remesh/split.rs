@@ -8,7 +8,7 @@ use crate::halfedge::NONE;
 
 /// An edge this much longer than wanted is split (Botsch and Kobbelt 2004): its halves are then as
 /// much too short as it was too long.
-const LONG: f64 = 4.0 / 3.0;
+pub(super) const LONG: f64 = 4.0 / 3.0;
 /// The longest edges go first, since a split in their triangles would leave others as long: the
 /// limit shrinks from sweep to sweep, as multiples of [`LONG`].
 const SWEEPS: [f64; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 1.0];
@@ -49,7 +49,7 @@ fn squared_excess(patch: &Patch, e: u32) -> f64 {
     if f == NONE && patch.frozen[a as usize] && patch.frozen[b as usize] {
         return 0.0;
     }
-    squared_distance(patch.point(a), patch.point(b)) / patch.wanted(a, b).powi(2)
+    squared_distance(patch.point(a), patch.point(b)) / patch.wanted_of(e).powi(2)
 }
 
 /// A vertex in the middle of an edge, unless the reference has none near.
