@@ -15,7 +15,7 @@ use crate::separable::Kernel;
 use crate::sheet::{voxel_along, Sheet};
 
 /// σ of the smoothing, work units.
-const SIGMA: f64 = 1.0;
+pub(crate) const SIGMA: f64 = 1.0;
 /// Where the kernel is cut off, in σ.
 const REACH: f64 = 2.6;
 /// How near to the middle of a sheet its inside is measured, work units, and how much of what a voxel is

@@ -1,0 +1,343 @@
+//! Surface → surface whose rims are smooth, so that voxels flipped at a rim do not show.
+//!
+//! A rim is cut where the sheet fraction (`rim.rs`) is ½, which follows every voxel. Each of its points
+//! moves, within the surface, to the parabola over arc length that fits the rim around it best (local
+//! regression, Cleveland 1979), which neither shrinks nor straightens what is curved. The parabola also
+//! tells how the rim bends: where a mask is smoothed its level set is drawn towards the centre by σ²κ/2,
+//! as in motion by curvature, and that is given back. What lies behind a rim follows it, less from ring
+//! to ring. Where a triangle would turn the points around it stay.
+//!
+//! Blind rims (`reach.rs`), which are none of the label's, stay, and so do points on the border of the
+//! volume.
+
+use crate::error::{collected, filled, push, zeros, Result};
+use crate::execution::Execution;
+use crate::grid::{along, cross, dot, length, on_border, sub, unit, Vec3};
+use crate::halfedge::{ends, Fans, NONE};
+use crate::manifold::Surface;
+use crate::normals::normal_of_fan;
+use crate::reach::WITHIN;
+use crate::region::Region;
+use crate::rim::SIGMA;
+
+/// How far along a rim to both sides a parabola is fitted, work units, but no farther than this share of
+/// a whole loop; and the least number of points.
+const REACH: f64 = 8.0;
+const SHARE: f64 = 0.25;
+const LEAST: usize = 6;
+/// No point moves farther, work units.
+const MOST: f64 = 0.7;
+/// Rings of points behind a rim that follow it.
+const RINGS: usize = 6;
+/// A triangle turns no farther than this cosine, and the rounds in which what turns farther is held.
+const TURNED: f64 = 0.5;
+const ROUNDS: usize = 8;
+/// Points handed to a worker at a time.
+const PIECE: usize = 1024;
+/// Passes over the points that [`smooth_rims`] makes.
+pub(crate) const PASSES: usize = 1;
+
+/// Points along a rim, with the surface's normal and the arc length at each.
+struct Rim {
+    points: Vec<u32>,
+    normals: Vec<Vec3>,
+    at: Vec<f64>,
+    /// The length of a closed rim.
+    around: Option<f64>,
+}
+
+/// Smooths the rims of a consistently wound 2-manifold. `fraction` is the sheet fraction at its points,
+/// the volume's last voxel is at `last`.
+pub(crate) fn smooth_rims(
+    surface: &mut Surface,
+    fraction: &[f64],
+    fans: &Fans,
+    last: Vec3,
+    execution: &mut Execution,
+) -> Result<()> {
+    let mut is_rim: Vec<bool> = zeros(surface.points.len())?;
+    execution.fill(&mut is_rim, PIECE, |piece, out| {
+        for (i, is_rim) in out.iter_mut().enumerate() {
+            let p = PIECE * piece + i;
+            *is_rim = fraction[p] < WITHIN && fans.is_boundary(&surface.triangles, p as u32);
+        }
+    })?;
+    let mut points = Vec::new();
+    let mut moves = Vec::new();
+    for rim in rims(surface, fans, &is_rim, last)? {
+        for i in 0..rim.points.len() {
+            let p = rim.points[i];
+            let stays = on_border(surface.points[p as usize], last).contains(&true);
+            if let Some(way) = rim.way(surface, i).filter(|_| !stays) {
+                push(&mut points, p)?;
+                push(&mut moves, way)?;
+            }
+        }
+    }
+    if points.is_empty() {
+        return Ok(());
+    }
+    follow(surface, fans, (points, moves), last)
+}
+
+/// The rims between points that are on one, other than along a border of the volume.
+fn rims(surface: &Surface, fans: &Fans, is_rim: &[bool], last: Vec3) -> Result<Vec<Rim>> {
+    let triangles = &surface.triangles;
+    let after = |p: u32| {
+        let mut sides = fans
+            .of(p)
+            .iter()
+            .filter(|&&e| fans.twin(triangles, e) == NONE);
+        let q = sides.next().map(|&e| ends(triangles, e).1)?;
+        let [u, v] = [p, q].map(|p| on_border(surface.points[p as usize], last));
+        let is_along_border = (0..3).any(|a| u[a] && v[a]);
+        (is_rim[q as usize] && !is_along_border).then_some(q)
+    };
+    let all = 0..is_rim.len() as u32;
+    let some = collected(all.filter(|&p| is_rim[p as usize]))?;
+    let next = collected(some.iter().map(|&p| after(p)))?;
+    let number = |p: u32| some.binary_search(&p).ok();
+    let mut is_first = filled(true, some.len())?;
+    for i in next.iter().filter_map(|q| number((*q)?)) {
+        is_first[i] = false;
+    }
+    let mut is_done = filled(false, some.len())?;
+    let mut rims = Vec::new();
+    let firsts = (0..some.len()).filter(|&i| is_first[i]);
+    for first in firsts.chain(0..some.len()) {
+        let (mut at, mut points) = (Some(first), Vec::new());
+        while let Some(i) = at.filter(|&i| !is_done[i]) {
+            is_done[i] = true;
+            push(&mut points, some[i])?;
+            at = next[i].and_then(number);
+        }
+        if points.len() >= LEAST {
+            push(
+                &mut rims,
+                Rim::new(surface, fans, points, !is_first[first])?,
+            )?;
+        }
+    }
+    Ok(rims)
+}
+
+impl Rim {
+    fn new(surface: &Surface, fans: &Fans, points: Vec<u32>, is_closed: bool) -> Result<Self> {
+        let place = |i: usize| surface.points[points[i % points.len()] as usize];
+        let mut at: Vec<f64> = zeros(points.len() + 1)?;
+        for i in 0..points.len() {
+            at[i + 1] = at[i] + length(sub(place(i + 1), place(i)));
+        }
+        let around = at.pop().filter(|_| is_closed);
+        let normal = |&p: &u32| normal_of_fan(&surface.points, &surface.triangles, fans.of(p));
+        Ok(Self {
+            normals: collected(points.iter().map(normal))?,
+            points,
+            at,
+            around,
+        })
+    }
+
+    /// The points within the reach of one: their numbers and how far along the rim they are.
+    fn near(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let (count, reach) = (self.points.len(), self.reach());
+        let ahead = (i..i + count).map(move |j| self.from(i, j));
+        let back = (1..count).map(move |n| self.from(i + count, i + count - n));
+        let is_near = move |near: &Option<(usize, f64)>| near.is_some_and(|n| n.1.abs() < reach);
+        let ahead = ahead.take_while(is_near);
+        ahead.chain(back.take_while(is_near)).flatten()
+    }
+
+    fn reach(&self) -> f64 {
+        self.around
+            .map_or(REACH, |around| REACH.min(SHARE * around))
+    }
+
+    /// A point, counted on around a closed rim, and how far it is along the rim from another.
+    fn from(&self, i: usize, j: usize) -> Option<(usize, f64)> {
+        let count = self.points.len();
+        let rounds = (j / count) as f64 - (i / count) as f64;
+        let way = self.at[j % count] - self.at[i % count];
+        match self.around {
+            Some(around) => Some((j % count, way + rounds * around)),
+            None => (rounds == 0.0).then_some((j % count, way)),
+        }
+    }
+
+    /// The length of rim that a point stands for.
+    fn share(&self, i: usize) -> f64 {
+        let last = self.points.len() - 1;
+        let around = self.around.unwrap_or(self.at[last]);
+        let after = if i < last { self.at[i + 1] } else { around };
+        let gap = around - self.at[last];
+        let before = if i > 0 { self.at[i - 1] } else { -gap };
+        0.5 * (after - before)
+    }
+
+    /// The way from a point to where it goes.
+    fn way(&self, surface: &Surface, i: usize) -> Option<Vec3> {
+        let place = |j: usize| surface.points[self.points[j] as usize];
+        let (mut s, mut t, mut normal) = ([0.0; 5], [[0.0; 3]; 3], [0.0; 3]);
+        for (j, x) in self.near(i) {
+            let weight = (1.0 - (x / self.reach()).abs().powi(3)).powi(3) * self.share(j);
+            normal = along(normal, weight, self.normals[j]);
+            let mut power = weight;
+            for k in 0..5 {
+                s[k] += power;
+                if k < 3 {
+                    t[k] = along(t[k], power, sub(place(j), place(i)));
+                }
+                power *= x;
+            }
+        }
+        let [offset, slope, bend] = parabola(s, t)?;
+        // Twice the coefficient is the curvature, but for how arc length passes.
+        let bend = bend.map(|v| 2.0 * v / dot(slope, slope).max(0.25));
+        let bend = along(bend, -dot(bend, unit(slope)), unit(slope));
+        let way = along(offset, -0.5 * SIGMA * SIGMA, bend);
+        let normal = unit(normal);
+        let way = along(way, -dot(way, normal), normal);
+        Some(way.map(|v| v * (MOST / length(way).max(MOST))))
+    }
+}
+
+/// The coefficients of the parabola of least squares; `s` are the weighted sums of powers of the
+/// parameter, `t` those of places times powers.
+fn parabola(s: [f64; 5], t: [Vec3; 3]) -> Option<[Vec3; 3]> {
+    let rows = [0, 1, 2].map(|k| [s[k], s[k + 1], s[k + 2]]);
+    let of = [(1, 2), (2, 0), (0, 1)].map(|(a, b)| cross(rows[a], rows[b]));
+    let determinant = dot(rows[0], of[0]);
+    let is_sure = determinant > 1e-6 * s[0] * s[2] * s[4];
+    let coefficient = |k: usize| -> Vec3 {
+        std::array::from_fn(|a| (0..3).map(|r| of[r][k] * t[r][a]).sum::<f64>() / determinant)
+    };
+    is_sure.then(|| [0, 1, 2].map(coefficient))
+}
+
+/// Moves points, and those behind them less and less.
+fn follow(
+    surface: &mut Surface,
+    fans: &Fans,
+    (points, moves): (Vec<u32>, Vec<Vec3>),
+    last: Vec3,
+) -> Result<()> {
+    let count = points.len();
+    let of_surface = surface.points.len();
+    let triangles = &surface.triangles;
+    let region = Region::new(points, RINGS, of_surface, (triangles, fans))?;
+    let mut ways = filled([0.0; 3], region.points.len())?;
+    ways[..count].copy_from_slice(&moves);
+    let stays = |p: u32| {
+        fans.is_boundary(triangles, p)
+            || on_border(surface.points[p as usize], last).contains(&true)
+    };
+    let behind = count..region.points.len();
+    let stays = collected(behind.map(|n| stays(region.points[n])))?;
+    for _ in 0..RINGS {
+        ways = region.average(ways, 1)?;
+        ways[..count].copy_from_slice(&moves);
+        for (way, _) in ways[count..]
+            .iter_mut()
+            .zip(&stays)
+            .filter(|(_, stays)| **stays)
+        {
+            *way = [0.0; 3];
+        }
+    }
+    let mut shares = filled(1.0, ways.len())?;
+    let mut new = collected(surface.points.iter().copied())?;
+    for round in 0..ROUNDS {
+        for ((&p, way), share) in region.points.iter().zip(&ways).zip(&shares) {
+            new[p as usize] = along(surface.points[p as usize], *share, *way);
+        }
+        let turned = turned(surface, fans, &region.points, &new)?;
+        if !turned.contains(&true) {
+            break;
+        }
+        for (share, _) in shares.iter_mut().zip(turned).filter(|(_, turned)| *turned) {
+            *share = if round + 3 < ROUNDS {
+                0.5 * *share
+            } else {
+                0.0
+            };
+        }
+    }
+    surface.points = new;
+    Ok(())
+}
+
+/// Whether each of some points has a triangle that turns if all go to new places.
+fn turned(surface: &Surface, fans: &Fans, points: &[u32], new: &[Vec3]) -> Result<Vec<bool>> {
+    let area = |t: [Vec3; 3]| cross(sub(t[1], t[0]), sub(t[2], t[0]));
+    let turns = |t: [u32; 3]| {
+        let before = area(t.map(|p| surface.points[p as usize]));
+        let after = area(t.map(|p| new[p as usize]));
+        dot(before, after) < TURNED * length(before) * length(after)
+    };
+    let of = |&p: &u32| {
+        let mut triangles = fans
+            .of(p)
+            .iter()
+            .map(|&e| surface.triangles[e as usize / 3]);
+        triangles.any(turns)
+    };
+    collected(points.iter().map(of))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::execution::Quiet;
+
+    const AROUND: u32 = 32;
+    const ROWS: u32 = 12;
+    const RADIUS: f64 = 4.0;
+
+    /// The radii of the inner rim of a flat ring, after smoothing; `off` is how far each point is off before.
+    fn radii(off: impl Fn(u32) -> f64, fraction: f64) -> Vec<f64> {
+        let mut surface = Surface::default();
+        for (row, i) in (0..ROWS).flat_map(|row| (0..AROUND).map(move |i| (row, i))) {
+            let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / f64::from(AROUND)).sin_cos();
+            let radius = RADIUS + 0.8 * f64::from(row) + if row == 0 { off(i) } else { 0.0 };
+            surface
+                .points
+                .push([50.0 + radius * cos, 50.0 + radius * sin, 50.0]);
+            let [a, b] = [i, (i + 1) % AROUND].map(|i| row * AROUND + i);
+            let [c, d] = [a, b].map(|p| p + AROUND);
+            if row + 1 < ROWS {
+                surface.triangles.extend([[a, c, d], [a, d, b]]);
+            }
+        }
+        surface.source.resize(surface.points.len(), 0);
+        let fractions = vec![fraction; surface.points.len()];
+        let fans = Fans::new(&surface.triangles, surface.points.len()).unwrap();
+        let mut quiet = Quiet::default();
+        let execution = &mut Execution::new(2, &mut quiet).unwrap();
+        smooth_rims(&mut surface, &fractions, &fans, [100.0; 3], execution).unwrap();
+        let rim = surface.points[..AROUND as usize].iter();
+        rim.map(|p| length(sub(*p, [50.0; 3]))).collect()
+    }
+
+    #[test]
+    fn a_rim_gets_back_what_smoothing_the_mask_took() {
+        let wanted = RADIUS + 0.5 * SIGMA * SIGMA / RADIUS;
+        assert!(radii(|_| 0.0, 0.5)
+            .iter()
+            .all(|r| (r - wanted).abs() < 0.04));
+    }
+
+    #[test]
+    fn a_spur_all_but_goes() {
+        let smooth = radii(|_| 0.0, 0.5);
+        let found = radii(|i| if i == 5 { -0.5 } else { 0.0 }, 0.5);
+        let off = found.iter().zip(&smooth).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < 0.2);
+    }
+
+    #[test]
+    fn a_rim_that_is_none_of_the_label_stays() {
+        assert!(radii(|_| 0.0, 0.9)
+            .iter()
+            .all(|r| (r - RADIUS).abs() < 1e-9));
+    }
+}
