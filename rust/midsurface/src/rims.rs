@@ -37,13 +37,14 @@ const PIECE: usize = 1024;
 /// Passes over the points that [`smooth_rims`] makes.
 pub(crate) const PASSES: usize = 1;
 
-/// Points along a rim, with the surface's normal and the arc length at each.
+/// Points along a rim, with the surface's normal at each and the length of the edge behind it.
 struct Rim {
     points: Vec<u32>,
     normals: Vec<Vec3>,
-    at: Vec<f64>,
-    /// The length of a closed rim.
-    around: Option<f64>,
+    edges: Vec<f64>,
+    is_closed: bool,
+    /// How far along the rim to both sides is near.
+    reach: f64,
 }
 
 /// Smooths the rims of a consistently wound 2-manifold. `fraction` is the sheet fraction at its points,
@@ -124,54 +125,67 @@ fn rims(surface: &Surface, fans: &Fans, is_rim: &[bool], last: Vec3) -> Result<V
 impl Rim {
     fn new(surface: &Surface, fans: &Fans, points: Vec<u32>, is_closed: bool) -> Result<Self> {
         let place = |i: usize| surface.points[points[i % points.len()] as usize];
-        let mut at: Vec<f64> = zeros(points.len() + 1)?;
-        for i in 0..points.len() {
-            at[i + 1] = at[i] + length(sub(place(i + 1), place(i)));
-        }
-        let around = at.pop().filter(|_| is_closed);
+        let edge = |i: usize| length(sub(place(i + 1), place(i)));
+        let edges = collected((0..points.len()).map(edge))?;
+        let reach = if is_closed {
+            // By length, since the loop may begin anywhere.
+            let mut sorted = collected(edges.iter().copied())?;
+            sorted.sort_unstable_by(f64::total_cmp);
+            REACH.min(SHARE * sorted.iter().sum::<f64>())
+        } else {
+            REACH
+        };
         let normal = |&p: &u32| normal_of_fan(&surface.points, &surface.triangles, fans.of(p));
         Ok(Self {
             normals: collected(points.iter().map(normal))?,
             points,
-            at,
-            around,
+            edges,
+            is_closed,
+            reach,
         })
     }
 
-    /// The points within the reach of one: their numbers and how far along the rim they are.
+    /// The points within reach of one, itself first: their numbers and how far along the rim they are,
+    /// counted from it, so that it does not matter where the rim begins.
     fn near(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let (count, reach) = (self.points.len(), self.reach());
-        let ahead = (i..i + count).map(move |j| self.from(i, j));
-        let back = (1..count).map(move |n| self.from(i + count, i + count - n));
-        let is_near = move |near: &Option<(usize, f64)>| near.is_some_and(|n| n.1.abs() < reach);
-        let ahead = ahead.take_while(is_near);
-        ahead.chain(back.take_while(is_near)).flatten()
+        let here = std::iter::once((i, 0.0));
+        here.chain(self.from(i, Self::after))
+            .chain(self.from(i, Self::before))
     }
 
-    fn reach(&self) -> f64 {
-        self.around
-            .map_or(REACH, |around| REACH.min(SHARE * around))
+    /// The points within reach of one, one `step` after the other.
+    fn from<'a>(
+        &'a self,
+        i: usize,
+        step: impl Fn(&Self, usize) -> Option<(usize, f64)> + 'a,
+    ) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let next = move |&(j, way): &(usize, f64)| {
+            let (k, edge) = step(self, j)?;
+            let way = way + edge;
+            (k != i && way.abs() < self.reach).then_some((k, way))
+        };
+        std::iter::successors(next(&(i, 0.0)), next)
     }
 
-    /// A point, counted on around a closed rim, and how far it is along the rim from another.
-    fn from(&self, i: usize, j: usize) -> Option<(usize, f64)> {
-        let count = self.points.len();
-        let rounds = (j / count) as f64 - (i / count) as f64;
-        let way = self.at[j % count] - self.at[i % count];
-        match self.around {
-            Some(around) => Some((j % count, way + rounds * around)),
-            None => (rounds == 0.0).then_some((j % count, way)),
-        }
+    /// The next point, and the way there.
+    fn after(&self, i: usize) -> Option<(usize, f64)> {
+        let is_last = i + 1 == self.points.len();
+        let next = if is_last { 0 } else { i + 1 };
+        (!is_last || self.is_closed).then_some((next, self.edges[i]))
+    }
+
+    /// The point before, and the way there, which is negative.
+    fn before(&self, i: usize) -> Option<(usize, f64)> {
+        let last = self.points.len() - 1;
+        let before = if i == 0 { last } else { i - 1 };
+        (i > 0 || self.is_closed).then_some((before, -self.edges[before]))
     }
 
     /// The length of rim that a point stands for.
     fn share(&self, i: usize) -> f64 {
-        let last = self.points.len() - 1;
-        let around = self.around.unwrap_or(self.at[last]);
-        let after = if i < last { self.at[i + 1] } else { around };
-        let gap = around - self.at[last];
-        let before = if i > 0 { self.at[i - 1] } else { -gap };
-        0.5 * (after - before)
+        let ways = [self.after(i), self.before(i)];
+        let ways = ways.iter().flatten().map(|(_, way)| way.abs());
+        0.5 * ways.sum::<f64>()
     }
 
     /// The way from a point to where it goes.
@@ -179,7 +193,7 @@ impl Rim {
         let place = |j: usize| surface.points[self.points[j] as usize];
         let (mut s, mut t, mut normal) = ([0.0; 5], [[0.0; 3]; 3], [0.0; 3]);
         for (j, x) in self.near(i) {
-            let weight = (1.0 - (x / self.reach()).abs().powi(3)).powi(3) * self.share(j);
+            let weight = (1.0 - (x / self.reach).abs().powi(3)).powi(3) * self.share(j);
             normal = along(normal, weight, self.normals[j]);
             let mut power = weight;
             for k in 0..5 {

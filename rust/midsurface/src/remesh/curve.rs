@@ -103,14 +103,31 @@ impl Curve {
     }
 
     fn turn_over(&self, number: u32, parameter: f64, reach: f64) -> f64 {
-        let at = |s: f64| {
-            let (i, j, t) = self.locate(number, s);
-            along(self.points[i], t, sub(self.points[j], self.points[i]))
-        };
-        let here = at(parameter);
-        let back = sub(here, at(parameter - reach));
-        let ahead = sub(at(parameter + reach), here);
+        let here = self.place(number, parameter);
+        let back = sub(here, self.place(number, parameter - reach));
+        let ahead = sub(self.place(number, parameter + reach), here);
         dot(unit(back), unit(ahead))
+    }
+
+    /// The place at an arc length of a loop, straight between the points of the reference.
+    fn place(&self, number: u32, parameter: f64) -> Vec3 {
+        let (i, j, t) = self.locate(number, parameter);
+        along(self.points[i], t, sub(self.points[j], self.points[i]))
+    }
+
+    /// How far a loop goes, on so long a way from an arc length, from the chord of that.
+    pub fn sagitta(&self, number: u32, from: f64, way: f64) -> f64 {
+        let Loop { first, count, .. } = self.loops[number as usize];
+        let start = self.place(number, from);
+        let chord = sub(self.place(number, from + way), start);
+        let here = self.locate(number, from).0 - first;
+        let between = (here + 1..here + count).map(|i| first + i % count);
+        let between = between
+            .take_while(|&i| self.distance(number, from, self.parameters[i]) < way)
+            .map(|i| sub(self.points[i], start));
+        let share = |p: Vec3| dot(p, chord) / dot(chord, chord).max(1e-12);
+        let off = between.map(|p| length(along(p, -share(p).clamp(0.0, 1.0), chord)));
+        off.fold(0.0, f64::max)
     }
 
     /// Direction of the parabola through a point of a loop and its neighbours.

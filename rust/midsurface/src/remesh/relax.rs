@@ -6,6 +6,8 @@ use super::split::LONG;
 use crate::grid::{along, dot, sub, unit, Vec3};
 use crate::halfedge::{previous, NONE};
 
+/// No boundary point slides to where its edges are farther than this from the curve, in lengths of an edge.
+const BEND: f64 = 0.15;
 /// No move makes an angle smaller than this sine's (30°), unless one was there before.
 const SHARP: f64 = 0.5;
 /// A point that is this near to where it should be, as a share of the edge length wanted, stays.
@@ -79,14 +81,26 @@ fn ways_to_neighbours(patch: &Patch, p: u32) -> Option<[f64; 2]> {
 }
 
 /// A boundary point on its way along the curve to the middle of all its neighbours: held at equal
-/// distances rim points would stretch the triangles behind them. No edge gets too long for the curve.
+/// distances rim points would stretch the triangles behind them. No edge gets too long for the curve, nor
+/// cuts a bend of it off.
 fn slid(patch: &Patch, p: u32, share: f64, ring: &[u32]) -> Option<Vertex> {
     let [before, after] = patch.along_boundary(p)?.map(|q| patch.point(q));
     let [back, ahead] = ways_to_neighbours(patch, p)?;
     let longest = (LONG * ON_BOUNDARY * patch.size(p)).max(0.5 * (back + ahead));
     let way = sub(centre(patch, ring), patch.point(p));
     let way = share * dot(way, unit(sub(after, before)));
-    slid_by(patch, p, way.max(ahead - longest).min(longest - back))
+    let way = way.max(ahead - longest).min(longest - back);
+    let Vertex { at, parameter, .. } = patch.vertices[p as usize];
+    let curve = &patch.reference.curve;
+    let off = |way: f64| {
+        let behind = curve.sagitta(at, parameter - back, back + way);
+        behind.max(curve.sagitta(at, parameter + way, ahead - way))
+    };
+    let is_along = |way: &f64| {
+        let off_then = off(*way);
+        off_then <= BEND * patch.size(p) || off_then <= off(0.0)
+    };
+    slid_by(patch, p, Some(way).filter(is_along)?)
 }
 
 /// A boundary point that has slid some way along the curve, but not up to a neighbour.
