@@ -8,7 +8,8 @@
 //! (`weld.rs`) and creases where sheets meet (`creases.rs`), closed where it has holes within the
 //! label (`holes.rs`), led on beyond the border of the volume (`beyond.rs`), moved midway between both
 //! faces (`midway.rs`, `look.rs`), made fair where these are not seen (`fairing.rs`), cut at the border,
-//! its rims made smooth (`rims.rs`), led on to where sheets meet (`reach.rs`), remeshed (`remesh`), rid of terraces (`terraces.rs`),
+//! its rims made smooth (`rims.rs`), led on to where sheets meet (`reach.rs`), remeshed (`remesh`), rid
+//! of terraces (`terraces.rs`),
 //! moved a last little step (`midway.rs`), rid of sharp triangles (`sharp.rs`) and self-intersections
 //! (`self_intersections.rs`). How much of the progress a stage is given is how long it took on the
 //! membranes of real cells.

@@ -17,7 +17,7 @@ const REACHES: [f64; 2] = [1.5, 3.0];
 /// Cosine of the least turn of a corner, 55°.
 const CORNER: f64 = 0.57;
 /// A shorter loop turns sharply all along and has no corners.
-const ROUND: f64 = 20.0;
+const ROUND: f64 = 12.0;
 
 /// A closed boundary curve: a range of the arrays of [`Curve`].
 #[derive(Clone, Copy, Debug)]
