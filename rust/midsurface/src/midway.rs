@@ -9,8 +9,8 @@
 //!
 //! The finished mesh takes one more step: what a point alone sees is noise more than it is shape, so
 //! it goes a small share of that way, as a Wiener filter would have it. Being off the middle falls in
-//! proportion to that share. Normals pay for it: on the phantoms their mean error is 2.0° in place of
-//! 1.1°, and 2.6° in place of 1.6° with noise.
+//! proportion to that share. Normals pay for it: on the phantoms their mean error is 1.9° in place of
+//! 1.1°, and 2.4° in place of 1.6° with noise.
 
 use rayon::prelude::*;
 

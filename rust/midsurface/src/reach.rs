@@ -117,7 +117,7 @@ fn blind_rims(
 }
 
 /// The points before and after a point of the boundary.
-fn beside(surface: &Surface, fans: &Fans, p: u32) -> [Option<u32>; 2] {
+pub(crate) fn beside(surface: &Surface, fans: &Fans, p: u32) -> [Option<u32>; 2] {
     let triangles = &surface.triangles;
     let is_side = |&e: &u32| fans.twin(triangles, e) == NONE;
     let leaving = || fans.of(p).iter().copied();

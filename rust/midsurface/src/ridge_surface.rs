@@ -8,7 +8,7 @@
 //! (`weld.rs`) and creases where sheets meet (`creases.rs`), closed where it has holes within the
 //! label (`holes.rs`), led on beyond the border of the volume (`beyond.rs`), moved midway between both
 //! faces (`midway.rs`, `look.rs`), made fair where these are not seen (`fairing.rs`), cut at the border,
-//! its rims made smooth (`rims.rs`), led on to where sheets meet (`reach.rs`), remeshed (`remesh`), rid
+//! its rims made smooth (`rim_smoothing.rs`), led on to where sheets meet (`reach.rs`), remeshed (`remesh`), rid
 //! of terraces (`terraces.rs`),
 //! moved a last little step (`midway.rs`), rid of sharp triangles (`sharp.rs`) and self-intersections
 //! (`self_intersections.rs`). How much of the progress a stage is given is how long it took on the
@@ -40,7 +40,7 @@ use crate::profile::Profile;
 use crate::reach::{self, reach};
 use crate::remesh::remesh;
 use crate::rim::{self, sheet_fraction};
-use crate::rims::{self, smooth_rims};
+use crate::rim_smoothing::{self, smooth_rims};
 use crate::scale::{self, HalfThickness};
 use crate::scraps::drop_scraps;
 use crate::self_intersections::{self, remove_self_intersections};
@@ -114,8 +114,12 @@ pub(crate) fn ridge_surface(
     };
     let sheets = find_sheets(&label, execution)?;
     let (surface, fraction) = cut_surface(batch, sheets, &distance, grid, execution)?;
-    let passes =
-        creases::PASSES + holes::PASSES + 2 + midway::PASSES + rims::PASSES + reach::PASSES;
+    let passes = creases::PASSES
+        + holes::PASSES
+        + 2
+        + midway::PASSES
+        + rim_smoothing::PASSES
+        + reach::PASSES;
     execution.stage("Moving midway", 0.49, 0.65, passes)?;
     let mut surface = moved_midway(&label, surface, &fraction, execution)?;
     turn_outward(&surface.points, &mut surface.triangles)?;

@@ -39,7 +39,7 @@ use crate::tiles::{tiles, Place, Tile, Tiling, VoxelBox};
 /// Voxels around a tile from which a contour comes that is cut and closed, moved midway, and led on.
 const CUT_REACH: usize = 48;
 const MOVE_REACH: usize = 48;
-const LEAD_REACH: usize = 32;
+const LEAD_REACH: usize = 48;
 /// Edge lengths from a seam within which triangles are remeshed across it, and as many around them are
 /// looked at.
 const ACROSS: f64 = 8.0;

@@ -125,18 +125,8 @@ fn keeps_topology(patch: &Patch, e: u32, u: u32, ring: &[u32]) -> bool {
         .around(u)
         .flat_map(|h| [patch.end(h), patch.opposite(h)])
         .collect();
-    // Neighbours of v: the ends of the ring, and on a boundary the last one's opposite corner.
-    let mut common = 0;
-    let mut count = |q: u32| common += usize::from(q != u && around_u.contains(&q));
-    for &h in ring {
-        count(patch.end(h));
-    }
-    if let Some(&last) = ring
-        .last()
-        .filter(|&&last| patch.twin(previous(last)) == NONE)
-    {
-        count(patch.opposite(last));
-    }
+    let is_common = |&q: &u32| q != u && around_u.contains(&q);
+    let common = patch.neighbours(ring).filter(is_common).count();
     common == sides.iter().filter(|&&h| h != NONE).count()
 }
 

@@ -166,6 +166,14 @@ impl<'a> Patch<'a> {
         }
     }
 
+    /// The neighbours of the point that the half-edges of a ring, as [`Self::around`] gives it, leave.
+    pub fn neighbours<'r>(&'r self, ring: &'r [u32]) -> impl Iterator<Item = u32> + 'r {
+        // On a boundary the last one is only found backwards.
+        let last = ring.last().filter(|&&e| self.twin(previous(e)) == NONE);
+        let ends = ring.iter().map(|&e| self.end(e));
+        ends.chain(last.map(|&e| self.opposite(e)))
+    }
+
     /// The half-edges that leave a point that is not frozen, counter-clockwise. On a boundary the
     /// first one has no twin.
     pub fn around(&self, p: u32) -> Around<'_> {

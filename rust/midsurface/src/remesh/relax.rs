@@ -4,7 +4,6 @@ use super::patch::{Kind, Patch, Vertex, ON_BOUNDARY};
 use super::shape::{faces, squared_sine};
 use super::split::LONG;
 use crate::grid::{along, dot, sub, unit, Vec3};
-use crate::halfedge::{previous, NONE};
 
 /// No boundary point slides to where its edges are farther than this from the curve, in lengths of an edge.
 const BEND: f64 = 0.15;
@@ -58,12 +57,8 @@ fn moved(patch: &Patch, p: u32, share: f64, ring: &[u32]) -> Option<Vertex> {
 /// The mean of a point's neighbours. Weights by area or length would keep a lattice of stretched
 /// triangles as it is; equal ones pull it towards equal edges.
 fn centre(patch: &Patch, ring: &[u32]) -> Vec3 {
-    let ends = ring.iter().map(|&e| patch.end(e));
-    // On a boundary one neighbour is only found backwards.
-    let last = ring.last().filter(|&&e| patch.twin(previous(e)) == NONE);
-    let neighbours = ends.chain(last.map(|&e| patch.opposite(e)));
     let add = |(sum, count), q| (along(sum, 1.0, patch.point(q)), count + 1.0);
-    let (sum, count) = neighbours.fold(([0.0; 3], 0.0), add);
+    let (sum, count) = patch.neighbours(ring).fold(([0.0; 3], 0.0), add);
     sum.map(|v| v / count)
 }
 
@@ -96,11 +91,8 @@ fn slid(patch: &Patch, p: u32, share: f64, ring: &[u32]) -> Option<Vertex> {
         let behind = curve.sagitta(at, parameter - back, back + way);
         behind.max(curve.sagitta(at, parameter + way, ahead - way))
     };
-    let is_along = |way: &f64| {
-        let off_then = off(*way);
-        off_then <= BEND * patch.size(p) || off_then <= off(0.0)
-    };
-    slid_by(patch, p, Some(way).filter(is_along)?)
+    let most = (BEND * patch.size(p)).max(off(0.0));
+    (off(way) <= most).then(|| slid_by(patch, p, way))?
 }
 
 /// A boundary point that has slid some way along the curve, but not up to a neighbour.

@@ -56,6 +56,13 @@ fn mesh(remeshed: &Remeshed) -> Mesh {
     }
 }
 
+/// The points of the boundary.
+fn boundary(remeshed: &Remeshed) -> impl Iterator<Item = u32> + '_ {
+    let twins = twins_if_wound(&remeshed.triangles, remeshed.points.len()).unwrap();
+    let sides = (0..twins.len() as u32).filter(move |&e| twins[e as usize] == NONE);
+    sides.map(|e| ends(&remeshed.triangles, e).0)
+}
+
 /// Smallest and largest angle, degrees.
 fn angles(remeshed: &Remeshed) -> [f64; 2] {
     let mut range = [180.0, 0.0f64];
@@ -159,18 +166,31 @@ fn any_number_of_threads_gives_the_same_mesh() {
 
 #[test]
 fn rims_and_corners_stay() {
-    let shape = rectangle(30, 40, 0.0, 15);
-    let remeshed = run(&shape, STEP, 2);
-    let corners = [[0.0, 0.0], [30.0, 0.0], [30.0, 40.0], [0.0, 40.0]];
-    for corner in corners {
-        let there = |p: &Vec3| [p[0], p[1]] == corner;
-        assert!(remeshed.points.iter().any(there), "{corner:?}");
+    // The rim of the smaller one is 16 long.
+    for [n, m] in [[30, 40], [4, 4]] {
+        let remeshed = run(&rectangle(n, m, 0.0, 15), STEP, 2);
+        let [width, height] = [n, m].map(|side| side as f64);
+        for corner in [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]] {
+            let there = |p: &Vec3| [p[0], p[1]] == corner;
+            assert!(remeshed.points.iter().any(there), "{corner:?}");
+        }
+        for p in boundary(&remeshed) {
+            let [x, y, _] = remeshed.points[p as usize];
+            let off = [x, width - x, y, height - y].map(f64::abs);
+            assert!(off.iter().any(|&o| o < 1e-9), "{x} {y}");
+        }
     }
-    let twins = twins_if_wound(&remeshed.triangles, remeshed.points.len()).unwrap();
-    for e in (0..twins.len() as u32).filter(|&e| twins[e as usize] == NONE) {
-        let [x, y, _] = remeshed.points[ends(&remeshed.triangles, e).0 as usize];
-        let off = [x, 30.0 - x, y, 40.0 - y].map(f64::abs);
-        assert!(off.iter().any(|&o| o < 1e-9), "{x} {y}");
+}
+
+#[test]
+fn triangles_at_rims_are_good() {
+    for shape in [ring(6.0, 20.0, 5), ring(9.0, 24.0, 6)] {
+        let mut remeshed = run(&shape, STEP, 2);
+        let on_rim: Vec<u32> = boundary(&remeshed).collect();
+        let is_at_rim = |t: &[u32; 3]| t.iter().any(|p| on_rim.contains(p));
+        remeshed.triangles.retain(is_at_rim);
+        let quality = mesh(&remeshed).quality().unwrap();
+        assert!(quality.mean >= 0.895, "{quality:?}");
     }
 }
 

@@ -10,13 +10,13 @@
 //! Blind rims (`reach.rs`), which are none of the label's, stay, and so do points on the border of the
 //! volume.
 
-use crate::error::{collected, filled, push, zeros, Result};
+use crate::error::{collected, extend, filled, push, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, cross, dot, length, on_border, sub, unit, Vec3};
-use crate::halfedge::{ends, Fans, NONE};
+use crate::halfedge::Fans;
 use crate::manifold::Surface;
 use crate::normals::normal_of_fan;
-use crate::reach::WITHIN;
+use crate::reach::{beside, WITHIN};
 use crate::region::Region;
 use crate::rim::SIGMA;
 
@@ -29,13 +29,15 @@ const LEAST: usize = 6;
 const MOST: f64 = 0.7;
 /// Rings of points behind a rim that follow it.
 const RINGS: usize = 6;
-/// A triangle turns no farther than this cosine, and the rounds in which what turns farther is held.
+/// A triangle turns no farther than this cosine: the points of one that does go half as far, in so many
+/// rounds, and after that not at all; and the rounds in all.
 const TURNED: f64 = 0.5;
-const ROUNDS: usize = 8;
+const HALVED: usize = 5;
+const ROUNDS: usize = 12;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 /// Passes over the points that [`smooth_rims`] makes.
-pub(crate) const PASSES: usize = 1;
+pub(crate) const PASSES: usize = 2;
 
 /// Points along a rim, with the surface's normal at each and the length of the edge behind it.
 struct Rim {
@@ -63,33 +65,28 @@ pub(crate) fn smooth_rims(
             *is_rim = fraction[p] < WITHIN && fans.is_boundary(&surface.triangles, p as u32);
         }
     })?;
-    let mut points = Vec::new();
-    let mut moves = Vec::new();
-    for rim in rims(surface, fans, &is_rim, last)? {
-        for i in 0..rim.points.len() {
-            let p = rim.points[i];
-            let stays = on_border(surface.points[p as usize], last).contains(&true);
-            if let Some(way) = rim.way(surface, i).filter(|_| !stays) {
-                push(&mut points, p)?;
-                push(&mut moves, way)?;
-            }
+    let rims = rims(surface, fans, &is_rim, last)?;
+    let of = |rim: &'_ Rim| 0..rim.points.len();
+    let all = rims.iter().flat_map(|rim| of(rim).map(move |i| (rim, i)));
+    let stays = |p: u32| on_border(surface.points[p as usize], last).contains(&true);
+    let all = collected(all.filter(|(rim, i)| !stays(rim.points[*i])))?;
+    let mut ways: Vec<Option<Vec3>> = filled(None, all.len())?;
+    execution.fill(&mut ways, PIECE, |piece, out| {
+        for (way, (rim, i)) in out.iter_mut().zip(&all[PIECE * piece..]) {
+            *way = rim.way(surface, *i);
         }
-    }
-    if points.is_empty() {
-        return Ok(());
-    }
+    })?;
+    let found = all.iter().zip(ways);
+    let found = found.filter_map(|((rim, i), way)| Some((rim.points[*i], way?)));
+    let (points, moves) = collected(found)?.into_iter().unzip();
     follow(surface, fans, (points, moves), last)
 }
 
 /// The rims between points that are on one, other than along a border of the volume.
 fn rims(surface: &Surface, fans: &Fans, is_rim: &[bool], last: Vec3) -> Result<Vec<Rim>> {
-    let triangles = &surface.triangles;
     let after = |p: u32| {
-        let mut sides = fans
-            .of(p)
-            .iter()
-            .filter(|&&e| fans.twin(triangles, e) == NONE);
-        let q = sides.next().map(|&e| ends(triangles, e).1)?;
+        let [_, q] = beside(surface, fans, p);
+        let q = q?;
         let [u, v] = [p, q].map(|p| on_border(surface.points[p as usize], last));
         let is_along_border = (0..3).any(|a| u[a] && v[a]);
         (is_rim[q as usize] && !is_along_border).then_some(q)
@@ -149,12 +146,12 @@ impl Rim {
     /// counted from it, so that it does not matter where the rim begins.
     fn near(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let here = std::iter::once((i, 0.0));
-        here.chain(self.from(i, Self::after))
-            .chain(self.from(i, Self::before))
+        here.chain(self.onward(i, Self::after))
+            .chain(self.onward(i, Self::before))
     }
 
     /// The points within reach of one, one `step` after the other.
-    fn from<'a>(
+    fn onward<'a>(
         &'a self,
         i: usize,
         step: impl Fn(&Self, usize) -> Option<(usize, f64)> + 'a,
@@ -228,56 +225,61 @@ fn parabola(s: [f64; 5], t: [Vec3; 3]) -> Option<[Vec3; 3]> {
     is_sure.then(|| [0, 1, 2].map(coefficient))
 }
 
-/// Moves points, and those behind them less and less.
+/// Moves points, and those behind them less and less, but not so far that a triangle turns.
 fn follow(
     surface: &mut Surface,
     fans: &Fans,
     (points, moves): (Vec<u32>, Vec<Vec3>),
     last: Vec3,
 ) -> Result<()> {
-    let count = points.len();
-    let of_surface = surface.points.len();
-    let triangles = &surface.triangles;
-    let region = Region::new(points, RINGS, of_surface, (triangles, fans))?;
-    let mut ways = filled([0.0; 3], region.points.len())?;
-    ways[..count].copy_from_slice(&moves);
-    let stays = |p: u32| {
-        fans.is_boundary(triangles, p)
-            || on_border(surface.points[p as usize], last).contains(&true)
-    };
-    let behind = count..region.points.len();
-    let stays = collected(behind.map(|n| stays(region.points[n])))?;
-    for _ in 0..RINGS {
-        ways = region.average(ways, 1)?;
-        ways[..count].copy_from_slice(&moves);
-        for (way, _) in ways[count..]
-            .iter_mut()
-            .zip(&stays)
-            .filter(|(_, stays)| **stays)
-        {
-            *way = [0.0; 3];
-        }
-    }
-    let mut shares = filled(1.0, ways.len())?;
+    let around = (surface.triangles.as_slice(), fans);
+    let region = Region::new(points, RINGS, surface.points.len(), around)?;
+    let mut ways = ways_behind(surface, fans, &region, moves, last)?;
     let mut new = collected(surface.points.iter().copied())?;
-    for round in 0..ROUNDS {
-        for ((&p, way), share) in region.points.iter().zip(&ways).zip(&shares) {
-            new[p as usize] = along(surface.points[p as usize], *share, *way);
+    for round in 1..=ROUNDS {
+        for (&p, way) in region.points.iter().zip(&ways) {
+            new[p as usize] = along(surface.points[p as usize], 1.0, *way);
         }
         let turned = turned(surface, fans, &region.points, &new)?;
         if !turned.contains(&true) {
             break;
         }
-        for (share, _) in shares.iter_mut().zip(turned).filter(|(_, turned)| *turned) {
-            *share = if round + 3 < ROUNDS {
-                0.5 * *share
-            } else {
-                0.0
-            };
+        let less = if round <= HALVED { 0.5 } else { 0.0 };
+        for (way, _) in ways.iter_mut().zip(turned).filter(|(_, turned)| *turned) {
+            *way = way.map(|v| less * v);
         }
     }
     surface.points = new;
     Ok(())
+}
+
+/// The ways of a region's points, of whose first ones the `moves` are given: other points of the
+/// boundary and those on a border of the volume stay.
+fn ways_behind(
+    surface: &Surface,
+    fans: &Fans,
+    region: &Region,
+    moves: Vec<Vec3>,
+    last: Vec3,
+) -> Result<Vec<Vec3>> {
+    let count = moves.len();
+    let stays = |&p: &u32| {
+        fans.is_boundary(&surface.triangles, p)
+            || on_border(surface.points[p as usize], last).contains(&true)
+    };
+    let stays = collected(region.points[count..].iter().map(stays))?;
+    let mut ways = moves;
+    let moves = collected(ways.iter().copied())?;
+    extend(&mut ways, stays.iter().map(|_| [0.0; 3]))?;
+    for _ in 0..RINGS {
+        ways = region.average(ways, 1)?;
+        ways[..count].copy_from_slice(&moves);
+        let behind = ways[count..].iter_mut().zip(&stays);
+        for (way, _) in behind.filter(|(_, stays)| **stays) {
+            *way = [0.0; 3];
+        }
+    }
+    Ok(ways)
 }
 
 /// Whether each of some points has a triangle that turns if all go to new places.
