@@ -360,7 +360,7 @@ fn find_tensors(
 fn trust(row: &Derivatives, i: usize, e: [f32; 3], (most_bent, h): (f32, [f32; 3])) -> f32 {
     let length = dot(e, e).sqrt().max(f32::MIN_POSITIVE);
     let n = [e[0] / length, e[1] / length, e[2] / length];
-    let (offset, tangential, bent) = step(row, i, n);
+    let (offset, tangential, bent) = row.step(i, n);
     let most = TANGENTIAL * row.sigma[i];
     let longer = 0.5 * (voxel_along(n, h) - 1.0);
     let share = (tangential / most).max(offset.abs() / (most + longer));
@@ -436,7 +436,7 @@ fn find_sheets(
         let mut found = [[0.0; EDGE]; 4];
         for i in 0..EDGE {
             let n = vector_at(&normals, i);
-            let (offset, tangential, bent) = step(&own, i, n);
+            let (offset, tangential, bent) = own.step(i, n);
             let close = (inside[i] > 0.0) | (voxel_along(n, h) <= LONG);
             let core = (near[i] > 0.0)
                 & close
@@ -444,6 +444,7 @@ fn find_sheets(
                 & (tangential <= TANGENTIAL * own.sigma[i])
                 & (bent <= most_bent)
                 & (varied[i] <= VARIED);
+            let offset = own.way_to_middle(offset, i, h);
             for (found, v) in found.iter_mut().zip([n[0], n[1], n[2], offset]) {
                 found[i] = if core { v } else { 0.0 };
             }
@@ -469,32 +470,4 @@ fn principal_directions([xx, yy, xy, xz, yz]: &[Row; ENTRIES]) -> ([Row; 3], Row
         }
     }
     (directions, varied)
-}
-
-/// Newton's step along n to where the logarithm of the profile is largest, how far a step of the
-/// same curvature would go within the sheet, and the curvature within the sheet over that along n;
-/// no numbers where the profile has no crest along n.
-#[inline(always)]
-pub(crate) fn step(row: &Derivatives, i: usize, n: [f32; 3]) -> (f32, f32, f32) {
-    let g = vector_at(&row.gradient, i);
-    let [xx, yy, zz, xy, xz, yz] = matrix_at(&row.hessian, i);
-    let bent = [
-        xx * n[0] + xy * n[1] + xz * n[2],
-        xy * n[0] + yy * n[1] + yz * n[2],
-        xz * n[0] + yz * n[1] + zz * n[2],
-    ];
-    let (slope, curvature) = (dot(g, n), dot(n, bent));
-    let within = [
-        g[0] - slope * n[0],
-        g[1] - slope * n[1],
-        g[2] - slope * n[2],
-    ];
-    // What is left of the trace is the curvature within the sheet, both directions together.
-    let bend = (xx + yy + zz - curvature) / curvature;
-    let number = if curvature < 0.0 { 1.0 } else { f32::NAN };
-    (
-        number * (-slope / curvature),
-        number * (dot(within, within).sqrt() / -curvature),
-        number * bend,
-    )
 }

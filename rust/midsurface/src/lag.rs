@@ -12,7 +12,7 @@
 use crate::bending::{self, bends, Bend};
 use crate::block::{row, Block, SIDE};
 use crate::bricks::{Batch, BRICK, EDGE, LAYER};
-use crate::crest::{rho, step};
+use crate::crest::rho;
 use crate::error::Result;
 use crate::execution::Execution;
 use crate::grid::Vec3;
@@ -54,15 +54,16 @@ pub(crate) fn turn_lagging(
             #[inline(always)]
             || profile.derivatives(batch, brick, is_turned, h),
         );
+        let spacing = h.map(|h| h as f32);
         for own in &rows {
             for x in 0..EDGE {
                 let i = own.row * EDGE + x;
                 let Some(n) = turned[i] else {
                     continue;
                 };
-                let (offset, ..) = step(own, x, n);
+                let (offset, ..) = own.step(x, n);
                 if is_trusted(offset, own.sigma[x], farthest) {
-                    sheets[i] = [n[0], n[1], n[2], offset];
+                    sheets[i] = [n[0], n[1], n[2], own.way_to_middle(offset, x, spacing)];
                 }
             }
         }

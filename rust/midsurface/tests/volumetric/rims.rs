@@ -1,4 +1,4 @@
-//! Rims of thin sheets that noise has made ragged.
+//! Rims that noise has made ragged.
 
 use crate::phantoms_known::judged;
 
@@ -18,4 +18,13 @@ fn sheets_are_not_led_astray_from_between_the_spurs_of_a_ragged_rim() {
         );
         assert!(report.max_error < 0.6, "{name} {seed}: {report}");
     }
+}
+
+/// Four slices, far apart: those off the middle say where it is, too, and sheets are led on from all.
+#[test]
+fn thick_sheets_lying_in_slices_apart_are_led_on_to_their_rims() {
+    let (_, phantom, report) = judged("disk lying in slices apart", 9, true);
+    let expected = phantom.topology.expect("a topology");
+    assert_eq!(report.connectivity.topology, expected, "{report}");
+    assert_eq!(report.covered_within_1, 1.0, "{report}");
 }
