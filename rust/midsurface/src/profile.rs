@@ -326,7 +326,7 @@ pub(crate) fn smooth_mask<'k>(
 mod tests {
     use super::*;
 
-    /// The density of a slab's profile that its faces' Gaussians add up to, by the trapezoidal rule.
+    /// A slab's profile under a Gaussian of σ = 1, but for a factor.
     fn profile(x: f64, half: f64) -> f64 {
         let steps = 2000;
         let at = |k: i32| 2.0 * half * f64::from(k) / f64::from(steps) - half;
