@@ -1,37 +1,33 @@
 //! Which triangles are near: a grid of cells around some triangles of a surface.
 
-use crate::buckets::Buckets;
-use crate::error::{collected, Result};
+use crate::error::{collected, zeros, Result};
 use crate::grid::{floor, sub, Vec3};
 use crate::manifold::Surface;
 use crate::touching::TOUCHING;
 
-/// Side of a cell, in mean sizes of a triangle; larger where the grid would have more than so many
-/// cells a triangle.
+/// Side of a cell, in mean sizes of a triangle and at least this share of what is looked at around
+/// them; larger where the grid would have more than so many cells a triangle.
 const SIDE: f64 = 1.5;
+const SHARE: f64 = 0.5;
 const CELLS: usize = 4;
 
 /// A box along the axes: its lower and upper corner.
 pub(crate) type Bounds = [Vec3; 2];
 
-/// The triangles of a surface within `reach` of some boxes.
+/// The triangles of a surface within `reach` of some boxes, with such as are hardly farther: those in a
+/// cell that a box reaches into.
 pub(crate) fn near(surface: &Surface, boxes: &[Bounds], reach: f64) -> Result<Vec<u32>> {
     let cells = Cells::around(boxes, reach, surface);
-    let wider = |[low, high]: Bounds| [low.map(|v| v - reach), high.map(|v| v + reach)];
-    let entries = || {
-        let of = |&own: &Bounds| {
-            let own = wider(own);
-            cells.reached_by(own).map(move |cell| (cell, own))
-        };
-        boxes.iter().flat_map(of)
-    };
-    let in_cell = Buckets::new(cells.count(), entries)?;
+    let mut is_reached: Vec<bool> = zeros(cells.count())?;
+    for [low, high] in boxes {
+        let wider = [low.map(|v| v - reach), high.map(|v| v + reach)];
+        for cell in cells.reached_by(wider) {
+            is_reached[cell as usize] = true;
+        }
+    }
     let is_near = |&t: &u32| {
-        let own = bounds(surface, t);
-        let mut around = cells
-            .reached_by(own)
-            .flat_map(|cell| in_cell.of(cell as usize));
-        around.any(|&other| overlap(own, other))
+        let mut around = cells.reached_by(bounds(surface, t));
+        around.any(|cell| is_reached[cell as usize])
     };
     let all = 0..surface.triangles.len() as u32;
     collected(all.filter(is_near))
@@ -78,6 +74,7 @@ impl Cells {
         let most = CELLS * surface.triangles.len();
         let least = (extent.iter().product::<f64>() / most as f64).cbrt();
         let side = least.max(SIDE * size / boxes.len() as f64);
+        let side = side.max(SHARE * margin);
         Self {
             low,
             side,

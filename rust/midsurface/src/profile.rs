@@ -183,17 +183,16 @@ impl Derivatives {
         *self = sum;
     }
 
-    /// How far the middle is where Newton's step says `offset`. Where voxels are long those of few layers tell
-    /// of a sheet, and those off the middle must say the same; elsewhere the step will do.
+    /// How far the middle is where Newton's step says `offset`. The longer voxels are the fewer layers tell of
+    /// a sheet, and those off the middle must say the same; where they are cubes the step will do.
     #[inline(always)]
     pub fn way_to_middle(&self, offset: f32, i: usize, h: [f32; 3]) -> f32 {
-        if h == [1.0; 3] {
-            return offset;
-        }
+        let longest = h[0].max(h[1]).max(h[2]);
+        let short = SHORT * (2.0 * (longest - 1.0)).min(1.0);
         let per_sigma = 1.0 / self.sigma[i];
         let half = (per_sigma * self.half_thickness[i]).min(1.0 / SHARE);
         let squared = ((per_sigma * offset) * (per_sigma * offset)).min(MOST_SHORT);
-        offset * (1.0 + SHORT * (half * half) * (half * half) * squared)
+        offset * (1.0 + short * (half * half) * (half * half) * squared)
     }
 
     /// Newton's step along n to where the logarithm of the profile is largest, how far a step of the
@@ -351,6 +350,9 @@ mod tests {
                 let off = |offset: f32| (f64::from(offset) + x).abs();
                 assert!(off(row.way_to_middle(offset, 0, [1.0, 1.0, 2.0])) < 0.05);
                 assert_eq!(row.way_to_middle(offset, 0, [1.0; 3]), offset);
+                // A header's rounding is no other shape.
+                let rounded = row.way_to_middle(offset, 0, [1.0, 1.0, 1.0 + 1e-6]);
+                assert!((rounded - offset).abs() < 1e-5, "{rounded} {offset}");
             }
         }
     }

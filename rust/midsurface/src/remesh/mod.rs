@@ -13,7 +13,7 @@
 //! | a block's half-edges, and the three changes of connectivity | `patch.rs` |
 //! | which edges are split, collapsed, flipped | `split.rs`, `collapse.rs`, `flip.rs` |
 //! | where points move | `relax.rs` |
-//! | every triangle becomes four, from twice the edge length to the one asked for | `subdivide.rs` |
+//! | edges far too long are halved first; every triangle becomes four, from twice the edge length to the one asked for | `subdivide.rs` |
 //! | what is still poor is mended | `polish.rs`, `repair.rs` |
 //!
 //! A triangle's work touches its block only, and blocks lie on a global grid: no step looks
@@ -44,7 +44,7 @@ use patch::{Kind, Patch, Vertex};
 use reference::{Place, Reference};
 pub(crate) use repair::SHARP;
 pub(crate) use shape::sine_of_smallest_angle;
-use subdivide::subdivide;
+use subdivide::{halve_long, subdivide};
 
 /// A remeshed surface.
 #[derive(Debug, Default)]
@@ -85,6 +85,11 @@ const COARSE_PASSES: usize = 4;
 const FINE_PASSES: usize = 1;
 /// Passes over what is remeshed already.
 const MENDING_PASSES: usize = 4;
+/// The longest edges that passes begin with, as multiples of those wanted: across the border of a block
+/// longer ones stay, and what is made short beside them folds.
+const LONGEST: f64 = 4.0;
+/// Every edge is at least this long.
+const ANY: f64 = 0.0;
 /// Times that points are moved in a pass.
 const RELAXATIONS: usize = 4;
 /// Points handed to a worker at a time.
@@ -129,12 +134,16 @@ pub(crate) fn remesh_some(
     execution.still(reference::PASSES + over_blocks + OTHER_PASSES);
     let reference = Reference::new(points, triangles, edge_length, execution)?;
     let mut surface = start(&reference, is_own)?;
+    if let Some(first) = coarse.first() {
+        surface = halve_long(surface, LONGEST * first, &reference, execution)?;
+        execution.still(over_blocks + OTHER_PASSES);
+    }
     for (number, &longest) in coarse.iter().enumerate() {
         let blocks = Blocks::new(&surface, BLOCK * longest, shift(number), execution)?;
         surface = blocks.work(&surface, &reference, (2.0, longest), execution, improve)?;
     }
     if !coarse.is_empty() {
-        surface = subdivide(&surface, &reference, execution)?;
+        surface = subdivide(&surface, ANY, &reference, execution)?;
     }
     for number in coarse.len()..all {
         let blocks = Blocks::new(&surface, side, shift(number), execution)?;

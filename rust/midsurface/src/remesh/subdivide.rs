@@ -1,4 +1,4 @@
-//! Every triangle becomes four: each edge gets a point in its middle.
+//! Every triangle becomes four: each edge gets a point in its middle, or only those that are too long.
 //!
 //! The new points have six edges each, four on a boundary, so that a coarse mesh of good triangles
 //! becomes a fine one in which three points out of four are regular, and the costly changes of
@@ -10,14 +10,39 @@ use super::reference::Reference;
 use super::split::middle_anyway;
 use crate::error::{check_count, filled, reserved, zeros, Result};
 use crate::execution::Execution;
+use crate::grid::squared_distance;
 use crate::halfedge::{ends, twins_if_wound, NONE};
 
 /// Edges or triangles handed to a worker at a time.
 const PIECE: usize = 4096;
+/// Rounds of halving, at most.
+const HALVINGS: usize = 16;
 
-/// Subdivides a surface; the new points lie on the reference.
+/// Halves edges until none is as long as this, and no shorter ones.
+pub(super) fn halve_long(
+    mut surface: Surface,
+    longest: f64,
+    reference: &Reference,
+    execution: &mut Execution,
+) -> Result<Surface> {
+    for _ in 0..HALVINGS {
+        let count = surface.triangles.len();
+        let length = |e: u32| squared_length(&surface, e);
+        if (0..3 * count as u32).all(|e| length(e) < longest * longest) {
+            break;
+        }
+        surface = subdivide(&surface, longest, reference, execution)?;
+        if surface.triangles.len() == count {
+            break;
+        }
+    }
+    Ok(surface)
+}
+
+/// Halves all edges at least this long; the new points lie on the reference.
 pub(super) fn subdivide(
     surface: &Surface,
+    longest: f64,
     reference: &Reference,
     execution: &mut Execution,
 ) -> Result<Surface> {
@@ -39,10 +64,9 @@ pub(super) fn subdivide(
     // Beside triangles that are not remeshed edges stay whole.
     let is_kept = |e: usize| {
         let (a, b) = ends(old, e as u32);
-        twins[e] == NONE
-            && [a, b]
-                .iter()
-                .all(|&p| surface.vertices[p as usize].is_frozen())
+        let is_frozen = |p: u32| surface.vertices[p as usize].is_frozen();
+        squared_length(surface, e as u32) < longest * longest
+            || (twins[e] == NONE && is_frozen(a) && is_frozen(b))
     };
     let mut middles = filled(Vertex::default(), firsts.len())?;
     execution.fill(&mut middles, PIECE, |piece, out| {
@@ -77,6 +101,12 @@ pub(super) fn subdivide(
         vertices,
         triangles,
     })
+}
+
+fn squared_length(surface: &Surface, e: u32) -> f64 {
+    let (a, b) = ends(&surface.triangles, e);
+    let [a, b] = [a, b].map(|p| surface.vertices[p as usize].point);
+    squared_distance(a, b)
 }
 
 /// The triangles that a triangle of which some edges are kept becomes; there may be less than four. Each

@@ -8,6 +8,7 @@ mod junctions;
 mod phantoms_known;
 mod real_volumes;
 mod rims;
+mod spacings;
 mod warnings;
 
 use midsurface::{extract, Grid, Mesh, Method, Options, Quiet, Volume};

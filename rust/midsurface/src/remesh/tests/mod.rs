@@ -5,7 +5,7 @@ use shapes::{rectangle, ring, sphere, torus, tube, Shape};
 use super::{remesh, Remeshed};
 use crate::components::DisjointSets;
 use crate::execution::{Execution, Quiet};
-use crate::grid::{dot, length, sub, unit, Vec3};
+use crate::grid::{cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::{ends, twins_if_wound, NONE};
 use crate::mesh::Mesh;
 
@@ -121,6 +121,21 @@ fn closed_and_open_surfaces_are_good() {
     ];
     for shape in &shapes {
         check_quality(shape, &run(shape, STEP, 2));
+    }
+}
+
+#[test]
+fn triangles_far_longer_than_edges_do_not_fold() {
+    for (stretch, edge_length) in [(30.0, STEP), (12.0, 0.7), (100.0, 20.0)] {
+        let shape = tube(15.0, 10, 21).stretched(stretch);
+        let remeshed = run(&shape, edge_length, 2);
+        check(&shape, &remeshed);
+        for t in &remeshed.triangles {
+            let [a, b, c] = t.map(|p| remeshed.points[p as usize]);
+            let normal = unit(cross(sub(b, a), sub(c, a)));
+            let outward = unit([a[0], a[1], 0.0]);
+            assert!(dot(normal, outward) > 0.2, "{stretch}: {a:?} {b:?} {c:?}");
+        }
     }
 }
 

@@ -149,6 +149,12 @@ impl Shape {
         self
     }
 
+    /// Stretches z.
+    pub fn stretched(mut self, factor: f64) -> Self {
+        self.points.iter_mut().for_each(|p| p[2] *= factor);
+        self
+    }
+
     /// Moves every point by up to `amount` along each axis.
     pub fn noisy(mut self, amount: f64, seed: u64) -> Self {
         let mut random = Random(seed);
