@@ -138,9 +138,8 @@ fn cases() -> impl Strategy<Value = Case> {
     (volumes, array, options).prop_map(|((labels, grid), array, options)| {
         let (on_cells, is_thin, scalar_type, components) = array;
         let (method, edge_length, wanted, threshold, threads) = options;
-        // A length in the image's units; by the finest spacing, ten times finer, a hundred times the triangles.
-        let coarsest = grid.spacing.into_iter().fold(0.0, f64::max);
-        let edge_length = edge_length * coarsest;
+        // A length in the image's units.
+        let edge_length = edge_length * grid.unit();
         Case {
             grid,
             labels,
