@@ -85,11 +85,6 @@ const COARSE_PASSES: usize = 4;
 const FINE_PASSES: usize = 1;
 /// Passes over what is remeshed already.
 const MENDING_PASSES: usize = 4;
-/// The longest edges that passes begin with, as multiples of those wanted: across the border of a block
-/// longer ones stay, and what is made short beside them folds.
-const LONGEST: f64 = 4.0;
-/// Every edge is at least this long.
-const ANY: f64 = 0.0;
 /// Times that points are moved in a pass.
 const RELAXATIONS: usize = 4;
 /// Points handed to a worker at a time.
@@ -134,8 +129,8 @@ pub(crate) fn remesh_some(
     execution.still(reference::PASSES + over_blocks + OTHER_PASSES);
     let reference = Reference::new(points, triangles, edge_length, execution)?;
     let mut surface = start(&reference, is_own)?;
-    if let Some(first) = coarse.first() {
-        surface = halve_long(surface, LONGEST * first, &reference, execution)?;
+    if let Some(&first) = coarse.first() {
+        surface = halve_long(surface, first, &reference, execution)?;
         execution.still(over_blocks + OTHER_PASSES);
     }
     for (number, &longest) in coarse.iter().enumerate() {
@@ -143,7 +138,7 @@ pub(crate) fn remesh_some(
         surface = blocks.work(&surface, &reference, (2.0, longest), execution, improve)?;
     }
     if !coarse.is_empty() {
-        surface = subdivide(&surface, ANY, &reference, execution)?;
+        surface = subdivide(&surface, 0.0, &reference, execution)?;
     }
     for number in coarse.len()..all {
         let blocks = Blocks::new(&surface, side, shift(number), execution)?;

@@ -7,31 +7,37 @@
 use super::blocks::Surface;
 use super::patch::Vertex;
 use super::reference::Reference;
-use super::split::middle_anyway;
+use super::split::{middle_anyway, LONG};
 use crate::error::{check_count, filled, reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::squared_distance;
-use crate::halfedge::{ends, twins_if_wound, NONE};
+use crate::halfedge::{ends, next, previous, twins_if_wound, NONE};
 
 /// Edges or triangles handed to a worker at a time.
 const PIECE: usize = 4096;
+/// The longest edges that passes can begin with, as multiples of those wanted: across the border of a
+/// block longer ones stay, and what is made short beside them folds.
+const LONGEST: f64 = 4.0;
+/// A triangle with a side so many times as long as another is a needle. In a lattice of these whose long
+/// sides are hardly too short to be split, short ones cannot be collapsed without making one too long.
+const NEEDLE: f64 = 2.5;
 /// Rounds of halving, at most.
 const HALVINGS: usize = 16;
 
-/// Halves edges until none is as long as this, and no shorter ones.
+/// Halves edges until none is far longer than `wanted`, and those of needles that would never be split.
 pub(super) fn halve_long(
     mut surface: Surface,
-    longest: f64,
+    wanted: f64,
     reference: &Reference,
     execution: &mut Execution,
 ) -> Result<Surface> {
     for _ in 0..HALVINGS {
         let count = surface.triangles.len();
-        let length = |e: u32| squared_length(&surface, e);
-        if (0..3 * count as u32).all(|e| length(e) < longest * longest) {
+        let is_wanted = |e: u32| squared_length(&surface, e) < wanted * wanted;
+        if (0..3 * count as u32).all(is_wanted) {
             break;
         }
-        surface = subdivide(&surface, longest, reference, execution)?;
+        surface = subdivide(&surface, wanted, reference, execution)?;
         if surface.triangles.len() == count {
             break;
         }
@@ -39,10 +45,29 @@ pub(super) fn halve_long(
     Ok(surface)
 }
 
-/// Halves all edges at least this long; the new points lie on the reference.
+/// Whether passes would fail at an edge, longer than `wanted`.
+fn is_long(surface: &Surface, twins: &[u32], e: u32, wanted: f64) -> bool {
+    let own = squared_length(surface, e);
+    if own < wanted * wanted {
+        return false;
+    }
+    let times = (own / (wanted * wanted)).sqrt();
+    if times >= LONG {
+        return times >= LONGEST;
+    }
+    let beside = [e, twins[e as usize]].into_iter().filter(|&e| e != NONE);
+    let sides = beside.flat_map(|e| [next(e), previous(e)]);
+    let shortest = sides
+        .map(|e| squared_length(surface, e))
+        .fold(own, f64::min);
+    own >= NEEDLE * NEEDLE * shortest
+}
+
+/// Halves all edges that are long for what is `wanted`, or all where that is 0; the new points lie on the
+/// reference.
 pub(super) fn subdivide(
     surface: &Surface,
-    longest: f64,
+    wanted: f64,
     reference: &Reference,
     execution: &mut Execution,
 ) -> Result<Surface> {
@@ -65,7 +90,7 @@ pub(super) fn subdivide(
     let is_kept = |e: usize| {
         let (a, b) = ends(old, e as u32);
         let is_frozen = |p: u32| surface.vertices[p as usize].is_frozen();
-        squared_length(surface, e as u32) < longest * longest
+        wanted > 0.0 && !is_long(surface, &twins, e as u32, wanted)
             || (twins[e] == NONE && is_frozen(a) && is_frozen(b))
     };
     let mut middles = filled(Vertex::default(), firsts.len())?;
