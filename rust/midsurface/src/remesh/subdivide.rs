@@ -8,7 +8,7 @@ use super::blocks::Surface;
 use super::patch::Vertex;
 use super::reference::Reference;
 use super::split::{middle_anyway, LONG};
-use crate::error::{check_count, filled, reserved, zeros, Result};
+use crate::error::{check_count, filled, push, reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::squared_distance;
 use crate::halfedge::{ends, next, previous, twins_if_wound, NONE};
@@ -75,17 +75,6 @@ pub(super) fn subdivide(
     check_count("triangles", 4 * old.len(), 3)?;
     let count = surface.vertices.len();
     let twins = twins_if_wound(old, count)?;
-    // The edge that each half-edge belongs to, numbered by the first of its half-edges.
-    let mut edge: Vec<u32> = zeros(twins.len())?;
-    let mut firsts: Vec<u32> = reserved(twins.len())?;
-    for (e, &twin) in twins.iter().enumerate() {
-        edge[e] = if twin != NONE && (twin as usize) < e {
-            edge[twin as usize]
-        } else {
-            firsts.push(e as u32);
-            firsts.len() as u32 - 1
-        };
-    }
     // Beside triangles that are not remeshed edges stay whole.
     let is_kept = |e: usize| {
         let (a, b) = ends(old, e as u32);
@@ -93,13 +82,21 @@ pub(super) fn subdivide(
         wanted > 0.0 && !is_long(surface, &twins, e as u32, wanted)
             || (twins[e] == NONE && is_frozen(a) && is_frozen(b))
     };
+    // The point in the middle of the edge that each half-edge belongs to, and the first half-edge of each.
+    let mut middle: Vec<u32> = filled(NONE, twins.len())?;
+    let mut firsts: Vec<u32> = Vec::new();
+    for (e, &twin) in twins.iter().enumerate() {
+        if twin != NONE && (twin as usize) < e {
+            middle[e] = middle[twin as usize];
+        } else if !is_kept(e) {
+            middle[e] = (count + firsts.len()) as u32;
+            push(&mut firsts, e as u32)?;
+        }
+    }
     let mut middles = filled(Vertex::default(), firsts.len())?;
     execution.fill(&mut middles, PIECE, |piece, out| {
         for (i, vertex) in out.iter_mut().enumerate() {
             let e = firsts[piece * PIECE + i];
-            if is_kept(e as usize) {
-                continue;
-            }
             let (a, b) = ends(old, e);
             let ends = [a, b].map(|p| &surface.vertices[p as usize]);
             *vertex = middle_anyway(reference, ends, twins[e as usize] == NONE);
@@ -110,8 +107,8 @@ pub(super) fn subdivide(
         for (i, four) in out.chunks_exact_mut(4).enumerate() {
             let t = piece * PIECE + i;
             let [a, b, c] = old[t];
-            let [d, e, f] = [0, 1, 2].map(|k| count as u32 + edge[3 * t + k]);
-            let kept = [0, 1, 2].map(|k| is_kept(3 * t + k));
+            let [d, e, f] = [0, 1, 2].map(|k| middle[3 * t + k]);
+            let kept = [d, e, f].map(|middle| middle == NONE);
             four.copy_from_slice(&match kept.iter().filter(|kept| **kept).count() {
                 0 => [[a, d, f], [d, b, e], [f, e, c], [d, e, f]],
                 _ => fewer([[a, d], [b, e], [c, f]], kept),
