@@ -139,7 +139,7 @@ fn triangles_far_longer_than_edges_do_not_fold() {
     }
 }
 
-/// With sides this long hardly one is long enough to be split, and no short one can be collapsed.
+/// With sides of about 3.5 hardly one is long enough to be split, and no short one can be collapsed.
 #[test]
 fn lattices_of_long_cells_are_remeshed() {
     for side in [2.0, 3.3, 3.5, 3.6] {
