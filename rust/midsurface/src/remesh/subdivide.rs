@@ -48,12 +48,9 @@ pub(super) fn halve_long(
 /// Whether passes would fail at an edge, longer than `wanted`.
 fn is_long(surface: &Surface, twins: &[u32], e: u32, wanted: f64) -> bool {
     let own = squared_length(surface, e);
-    if own < wanted * wanted {
-        return false;
-    }
-    let times = (own / (wanted * wanted)).sqrt();
-    if times >= LONG {
-        return times >= LONGEST;
+    let is_at_least = |times: f64| own >= (times * wanted).powi(2);
+    if !is_at_least(1.0) || is_at_least(LONG) {
+        return is_at_least(LONGEST);
     }
     let beside = [e, twins[e as usize]].into_iter().filter(|&e| e != NONE);
     let sides = beside.flat_map(|e| [next(e), previous(e)]);
@@ -79,8 +76,8 @@ pub(super) fn subdivide(
     let is_kept = |e: usize| {
         let (a, b) = ends(old, e as u32);
         let is_frozen = |p: u32| surface.vertices[p as usize].is_frozen();
-        wanted > 0.0 && !is_long(surface, &twins, e as u32, wanted)
-            || (twins[e] == NONE && is_frozen(a) && is_frozen(b))
+        (twins[e] == NONE && is_frozen(a) && is_frozen(b))
+            || !is_long(surface, &twins, e as u32, wanted)
     };
     // The point in the middle of the edge that each half-edge belongs to, and the first half-edge of each.
     let mut middle: Vec<u32> = filled(NONE, twins.len())?;

@@ -1,8 +1,27 @@
 //! Slices far apart.
 
-use phantoms::{Frame, Phantom, Rim, Shape, Slab, Thickness, Topology};
+use phantoms::{Frame, Phantom, Report, Rim, Shape, Slab, Thickness, Topology};
 
 use crate::phantoms_known::judged_phantom;
+
+/// What is to be said of a sheet in slices so far apart; its topology is asserted.
+fn judged(
+    dimensions: [usize; 3],
+    apart: f64,
+    (shape, thickness): (Shape, f64),
+    topology: Topology,
+) -> Report {
+    let slab = Slab {
+        shape,
+        thickness: Thickness::Constant(thickness),
+        label: 1,
+    };
+    let frame = Frame::with_spacing(dimensions, [1.0, 1.0, apart]);
+    let phantom = Phantom::new("", frame, vec![slab], Some(topology));
+    let report = judged_phantom(&phantom);
+    assert_eq!(report.connectivity.topology, topology, "{apart}: {report}");
+    report
+}
 
 /// The lattice of such a sheet's points is as regular as can be, and of poor triangles.
 #[test]
@@ -13,20 +32,13 @@ fn a_flat_sheet_upright_in_slices_apart_is_flat() {
         boundary_loops: 1,
     };
     for apart in [3.3, 3.5] {
-        let sheet = Slab {
-            shape: Shape::Plane {
-                centre: [8.0, 20.0, 20.0],
-                normal: [1.0, 0.0, 0.0],
-                rim: Rim::None,
-                holes: Vec::new(),
-            },
-            thickness: Thickness::Constant(3.0),
-            label: 1,
+        let plane = Shape::Plane {
+            centre: [8.0, 20.0, 20.0],
+            normal: [1.0, 0.0, 0.0],
+            rim: Rim::None,
+            holes: Vec::new(),
         };
-        let frame = Frame::with_spacing([24, 40, 40], [1.0, 1.0, apart]);
-        let phantom = Phantom::new("", frame, vec![sheet], Some(whole));
-        let report = judged_phantom(&phantom);
-        assert_eq!(report.connectivity.topology, whole, "{apart}: {report}");
+        let report = judged([24, 40, 40], apart, (plane, 3.0), whole);
         assert!(report.max_error < 0.1, "{apart}: {report}");
         assert!(report.smallest_angle > 25.0, "{apart}: {report}");
     }
@@ -41,19 +53,12 @@ fn slices_very_far_apart_make_no_folds() {
         boundary_loops: 2,
     };
     for apart in [20.0, 32.0] {
-        let tube = Slab {
-            shape: Shape::Tube {
-                centre: [31.7, 31.4, 0.0],
-                axis: [0.0, 0.0, 1.0],
-                radius: 22.0,
-            },
-            thickness: Thickness::Constant(5.0),
-            label: 1,
+        let tube = Shape::Tube {
+            centre: [31.7, 31.4, 0.0],
+            axis: [0.0, 0.0, 1.0],
+            radius: 22.0,
         };
-        let frame = Frame::with_spacing([64, 64, 16], [1.0, 1.0, apart]);
-        let phantom = Phantom::new("", frame, vec![tube], Some(open));
-        let report = judged_phantom(&phantom);
-        assert_eq!(report.connectivity.topology, open, "{apart}: {report}");
+        let report = judged([64, 64, 16], apart, (tube, 5.0), open);
         assert_eq!(report.self_intersections, 0, "{apart}: {report}");
         assert!(report.max_error < 0.6, "{apart}: {report}");
     }
