@@ -13,6 +13,7 @@
 //! | a block's half-edges, and the three changes of connectivity | `patch.rs` |
 //! | which edges are split, collapsed, flipped | `split.rs`, `collapse.rs`, `flip.rs` |
 //! | where points move | `relax.rs` |
+//! | points leave their lattice | `jitter.rs` |
 //! | edges far too long are halved first; every triangle becomes four, from twice the edge length to the one asked for | `subdivide.rs` |
 //! | what is still poor is mended | `polish.rs`, `repair.rs` |
 //!
@@ -23,6 +24,7 @@ mod blocks;
 mod collapse;
 mod curve;
 mod flip;
+mod jitter;
 mod patch;
 mod polish;
 mod reference;
@@ -130,6 +132,7 @@ pub(crate) fn remesh_some(
     let reference = Reference::new(points, triangles, edge_length, execution)?;
     let mut surface = start(&reference, is_own)?;
     if let Some(&first) = coarse.first() {
+        jitter::jitter(&mut surface, &reference, execution)?;
         surface = halve_long(surface, first, &reference, execution)?;
         execution.still(over_blocks + OTHER_PASSES);
     }

@@ -31,7 +31,7 @@ fn a_flat_sheet_upright_in_slices_apart_is_flat() {
         euler: 1,
         boundary_loops: 1,
     };
-    for apart in [3.3, 3.5] {
+    for apart in [1.3, 2.0, 3.3, 3.5] {
         let plane = Shape::Plane {
             centre: [8.0, 20.0, 20.0],
             normal: [1.0, 0.0, 0.0],
@@ -41,6 +41,8 @@ fn a_flat_sheet_upright_in_slices_apart_is_flat() {
         let report = judged([24, 40, 40], apart, (plane, 3.0), whole);
         assert!(report.max_error < 0.1, "{apart}: {report}");
         assert!(report.smallest_angle > 25.0, "{apart}: {report}");
+        assert!(report.smallest_angle_mean > 53.5, "{apart}: {report}");
+        assert!(report.quality_mean > 0.93, "{apart}: {report}");
     }
 }
 
