@@ -6,7 +6,7 @@
  * read: cell array `Slice` (required); `Label` and `Component` (default: 1 and 0), and the point
  * arrays `Thickness` (default: 0) and `BorderDistance` (default: there is no border); and the field
  * data array `VoxelSteps` (default: unknown, so that terraces of voxels are flattened less).
- * Output: the mesh that vtkMidSurfaceFilter makes before any remeshing, see there.
+ * Output: the mesh that vtkMidSurfaceFilter makes before it is remeshed, see there.
  */
 
 #ifndef vtkPolylineZipper_h

@@ -671,7 +671,7 @@ struct midsurface_options midsurface_options_default(void);
 
 /**
  * Traces the mid-polylines of a label volume: the mid-surface's lines in every slice along z.
- * midsurface_zip makes midsurface_extract's mesh of them.
+ * midsurface_zip makes midsurface_extract's surface of them.
  *
  * volume, options: as described there.
  * out: where the new polylines go.
@@ -727,10 +727,11 @@ enum midsurface_status midsurface_polylines_arrays(const struct midsurface_polyl
 void midsurface_polylines_free(struct midsurface_polylines *polylines);
 
 /**
- * Joins the polylines of neighbouring slices to a mesh.
+ * Joins the polylines of neighbouring slices to a mesh. Its points are those of the lines;
+ * midsurface_extract remeshes it.
  *
  * polylines: the polylines; they stay as they are.
- * options: as described there; options.labels is not looked at.
+ * options: as described there; options.labels and options.edge_length are not looked at.
  * out: where the new mesh goes.
  * error: where an error goes; may be NULL.
  */

@@ -77,7 +77,7 @@ impl midsurface_polylines {
 }
 
 /// Traces the mid-polylines of a label volume: the mid-surface's lines in every slice along z.
-/// midsurface_zip makes midsurface_extract's mesh of them.
+/// midsurface_zip makes midsurface_extract's surface of them.
 ///
 /// volume, options: as described there.
 /// out: where the new polylines go.
@@ -177,10 +177,11 @@ pub unsafe extern "C" fn midsurface_polylines_free(polylines: *mut midsurface_po
     unsafe { release(polylines) };
 }
 
-/// Joins the polylines of neighbouring slices to a mesh.
+/// Joins the polylines of neighbouring slices to a mesh. Its points are those of the lines;
+/// midsurface_extract remeshes it.
 ///
 /// polylines: the polylines; they stay as they are.
-/// options: as described there; options.labels is not looked at.
+/// options: as described there; options.labels and options.edge_length are not looked at.
 /// out: where the new mesh goes.
 /// error: where an error goes; may be NULL.
 #[no_mangle]

@@ -298,7 +298,9 @@ fn a_panic_in_any_stage_is_an_error_and_the_next_run_works() {
         ..ridge_surface
     };
     let [zipping, mesh] = ZIPPING;
-    let stages = [READING, FIELD, TRACING, zipping, mesh];
+    let remeshing = "Remeshing";
+    let finishing = "Finishing the mesh";
+    let stages = [READING, FIELD, TRACING, zipping, mesh, remeshing, finishing];
     panic_in_each_stage("labels", &["Finding labels"], || {
         find_labels(&volume, &zipper)
     });

@@ -113,7 +113,7 @@ pub fn zip_polylines_piece(
         polylines.check()?;
         check_held_by_one(polylines, team)?;
         let mut findings = Findings::default();
-        let mesh = zip(polylines, &mut findings, 1.0, execution)?;
+        let mesh = zip(polylines, &mut findings, 1.0, execution)?.into_mesh(execution)?;
         Ok((numbered(mesh, &[], team)?, findings))
     })
 }

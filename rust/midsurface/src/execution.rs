@@ -152,9 +152,12 @@ impl<'a> Execution<'a> {
         self.report(0.0)
     }
 
-    /// Corrects the number of passes of the present stage: so many are still to come.
+    /// Corrects the number of passes of the present stage: so many are still to come. Once some are done
+    /// they do not become more than announced: progress would go back.
     pub fn still(&mut self, passes: usize) {
-        self.passes = self.passes_done + passes;
+        let all = self.passes_done + passes;
+        let is_begun = self.passes_done > 0;
+        self.passes = if is_begun { all.min(self.passes) } else { all };
     }
 
     /// Tells the observer how much of the stage's present pass is done.

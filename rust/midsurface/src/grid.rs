@@ -128,6 +128,30 @@ impl Grid {
             std::array::from_fn(|a| self.spacing[a] * (self.extent_start[a] as f64 + voxel[a]));
         std::array::from_fn(|r| self.origin[r] + dot(self.direction[r], local))
     }
+
+    /// World coordinates of a point of the work frame.
+    pub(crate) fn work_to_world(&self) -> impl Fn(Vec3) -> Vec3 + Sync + '_ {
+        let h = self.work_spacing();
+        move |p| self.world(std::array::from_fn(|a| p[a] / h[a]))
+    }
+
+    /// Work coordinates of a point of the world. Rounded to nine digits, so that the same voxels elsewhere,
+    /// which may cost a last bit, cannot change a decision further down.
+    pub(crate) fn world_to_work(&self) -> impl Fn(Vec3) -> Vec3 + Sync + '_ {
+        let h = self.work_spacing();
+        let steps = self.voxel_steps();
+        let [x, y, z]: [Vec3; 3] = std::array::from_fn(|a| steps.map(|row| row[a]));
+        let across = [cross(y, z), cross(z, x), cross(x, y)];
+        let volume = dot(x, across[0]);
+        move |p| {
+            let from_origin = sub(p, self.origin);
+            std::array::from_fn(|a| {
+                let index = dot(across[a], from_origin) / volume;
+                let work = h[a] * (index - self.extent_start[a] as f64);
+                (work * 1e9).round() / 1e9
+            })
+        }
+    }
 }
 
 /// The last voxel of a volume, whose first one is the origin, in units of `h`.

@@ -30,8 +30,7 @@
 //! | ridge field | distance → a smooth field whose crest is the mid-surface | `ridge.rs`, `sheet.rs` |
 //! | polylines | ridge field → a line midway through every slice (`slice.rs`, `trace.rs`) | `polylines.rs` |
 //! | zipper | polylines → strips of triangles between slices (`strip.rs`) | `zipper.rs` |
-//! | mesh | triangles → 2-manifold (`manifold.rs`), better triangles (`flips.rs`), no terraces (`terraces.rs`), normals | `mesh.rs` |
-//! | edge length | triangles → those of the length asked for, if any (`remesh`) | `edge_length.rs` |
+//! | mesh | triangles → 2-manifold (`manifold.rs`), no terraces (`terraces.rs`), then nearly equilateral triangles (`remesh`) | `zipped_surface.rs` |
 //!
 //! Arrays are in the order x, y, z, volumes have shape (z, y, x) with x fastest. Lengths inside
 //! are in units of the finest spacing, so that the same voxels in other units give the same mesh;
@@ -61,7 +60,6 @@ mod crest;
 mod crossings;
 mod distance;
 mod distributed;
-mod edge_length;
 mod eigen;
 mod ends;
 mod error;
@@ -135,6 +133,7 @@ mod trim;
 mod vectors;
 mod volume;
 mod weld;
+mod zipped_surface;
 mod zipper;
 
 use ndarray::ArrayViewMut3;
@@ -157,12 +156,14 @@ use numbering::Key;
 pub use polylines::{Polyline, Polylines};
 pub use quality::Quality;
 use reading::{read_parts, READING};
+use remesh::wanted_edge;
 pub use statistics::{
     statistics, statistics_of_pieces, Scope, Statistics, ThicknessFigures, TriangleMesh,
 };
 use tiled_mesh::TileMesh;
 use tiled_surface::tiled_surface;
 pub use volume::{Label, Scalars, Volume};
+use zipped_surface::{ZippedSurface, ZIPPED};
 
 /// How the mid-surface is found.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -184,19 +185,15 @@ pub struct Options {
     pub labels: Option<Vec<i64>>,
     /// Number of worker threads; 0: one a core.
     pub threads: usize,
-    /// The mesh's edge length to aim at, world units; 0: √2 times the finest spacing, which the
-    /// zipper's lines have anyway, so that its mesh is left as it is.
+    /// The mesh's edge length to aim at, world units; 0: √2 times the finest spacing.
     pub edge_length: f64,
 }
-
-/// Share of what comes after the lines that zipping takes where the mesh is remeshed.
-const ZIPPED: f64 = 0.4;
 
 impl Options {
     /// Share of the run within which labels are read and, by the zipper, lines are traced.
     fn tracing(&self) -> f64 {
         match self.method {
-            Method::PolylineZipper => 0.7,
+            Method::PolylineZipper => 0.45,
             Method::RidgeSurface => 1.0,
         }
     }
@@ -291,7 +288,7 @@ pub fn mid_polylines(
     Ok(polylines)
 }
 
-/// Joins the polylines of neighbouring slices to a mesh: that of [`extract`] before any remeshing,
+/// Joins the polylines of neighbouring slices to a mesh: that of [`extract`] before it is remeshed,
 /// whatever edge length the options name.
 ///
 /// # Errors
@@ -304,7 +301,7 @@ pub fn zip_polylines(
     polylines.check()?;
     let mut execution = Execution::new(options.threads, observer)?;
     let mut findings = Findings::default();
-    let mesh = zip(polylines, &mut findings, 1.0, &mut execution)?;
+    let mesh = zip(polylines, &mut findings, 1.0, &mut execution)?.into_mesh(&mut execution)?;
     findings.warn(&mut execution);
     execution.finish()?;
     Ok(mesh)
@@ -347,15 +344,10 @@ fn find_surface(
             let findings = &mut found.findings;
             let (polylines, disks) = trace_polylines(parts, grid, execution, options.tracing())?;
             findings.disks = disks;
-            found.mesh = match options.edge_length {
-                0.0 => zip(&polylines, findings, 1.0, execution)?,
-                length => {
-                    let mesh = zip(&polylines, findings, ZIPPED, execution)?;
-                    drop(polylines);
-                    execution.stage("Remeshing", ZIPPED, 1.0, 1)?;
-                    mesh.with_edge_length(length, grid.unit(), execution)?
-                }
-            }
+            let surface = zip(&polylines, findings, ZIPPED, execution)?;
+            drop(polylines);
+            let wanted = wanted_edge(options.edge_length, grid);
+            found.mesh = surface.remeshed(grid, wanted, execution)?;
         }
         Method::RidgeSurface => {
             let size = (options.edge_length, sizes);
@@ -480,11 +472,16 @@ fn zip(
     findings: &mut Findings,
     until: f64,
     execution: &mut Execution,
-) -> Result<Mesh> {
+) -> Result<ZippedSurface> {
     let polylines = &*polylines.without_repeats()?;
     execution.stage("Zipping polylines", 0.0, 0.6 * until, zipper::PASSES)?;
     let triangles = zipper::zip(polylines, execution)?;
-    execution.stage("Making the mesh", 0.6 * until, until, mesh::PASSES)?;
+    execution.stage(
+        "Making the mesh",
+        0.6 * until,
+        until,
+        zipped_surface::PASSES,
+    )?;
     findings.lines = polylines.lines.len();
     findings.triangles = triangles.len();
     if let Some(([a, b, _], _)) = triangles.first() {
@@ -492,5 +489,5 @@ fn zip(
         let edge = grid::length(grid::sub(a, b));
         findings.is_far = findings::is_far(grid::farthest(&polylines.points), edge);
     }
-    Mesh::assemble(polylines, triangles, execution)
+    ZippedSurface::new(polylines, triangles, execution)
 }

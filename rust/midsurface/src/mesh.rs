@@ -1,25 +1,13 @@
 //! The result: a triangle mesh, and the invariants it keeps.
 
-use std::collections::BTreeMap;
-
 use rayon::prelude::*;
 
 use crate::components::DisjointSets;
-use crate::error::{check_count, collected, extend, filled, push, reserved, zeros, Error, Result};
+use crate::error::{check_count, collected, extend, filled, zeros, Error, Result};
 use crate::execution::Execution;
-use crate::flips::flip_edges;
-use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
-use crate::halfedge::{Edges, Fans, NONE};
-use crate::lattice::planes_across_slices;
-use crate::manifold::{self, make_manifold, Surface};
-use crate::normals::{normals, NORMAL_PASSES};
-use crate::polylines::Polylines;
-use crate::terraces::{self, flatten_terraces, LineOfPoint, OnBoundary};
-use crate::zipper::Zipped;
-
-/// Passes over the mesh that [`Mesh::assemble`] makes, for its progress.
-pub(crate) const PASSES: usize =
-    2 + manifold::PASSES + 2 * NORMAL_PASSES + terraces::OF_LINES.passes();
+use crate::grid::{along, cross, dot, length, sub, Vec3};
+use crate::halfedge::{Edges, NONE};
+use crate::manifold::{make_manifold, Surface};
 
 /// A triangle mesh: a 2-manifold with boundary, consistently wound in each connected piece.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -97,67 +85,6 @@ impl Mesh {
         extend(&mut self.thickness, other.thickness)?;
         extend(&mut self.labels, other.labels)?;
         extend(&mut self.components, other.components)
-    }
-
-    /// Builds the mesh from the zipper's triangles.
-    pub(crate) fn assemble(
-        polylines: &Polylines,
-        zipped: Vec<Zipped>,
-        execution: &mut Execution,
-    ) -> Result<Self> {
-        let mut surface = Surface {
-            points: collected(polylines.points.iter().copied())?,
-            source: collected(0..polylines.points.len() as u32)?,
-            triangles: collected(zipped.iter().map(|z| z.0))?,
-        };
-        make_manifold(&mut surface, execution)?;
-        flip_edges(&surface.points, &mut surface.triangles)?;
-        execution.pass_done()?;
-        turn_outward(&surface.points, &mut surface.triangles)?;
-        execution.pass_done()?;
-        let fans = Fans::new(&surface.triangles, surface.points.len())?;
-        let rough = normals(&surface.points, &surface.triangles, &fans, execution)?;
-        let lines = lines_of_points(polylines, &surface.source)?;
-        flatten_terraces(
-            &mut surface.points,
-            (&surface.triangles, &fans),
-            &rough,
-            &lines,
-            (
-                terraces::OF_LINES,
-                &planes_across_slices(polylines.voxel_steps),
-            ),
-            execution,
-        )?;
-        let fans = match drop_degenerate(&mut surface, |p| p.map(|v| v as f32), execution)? {
-            true => Fans::new(&surface.triangles, surface.points.len())?,
-            false => fans,
-        };
-        let line_of = line_of_points(polylines)?;
-        let line = |t: &[u32; 3]| &polylines.lines[line_of[surface.source[t[0] as usize] as usize]];
-        let mut mesh = Self {
-            labels: collected(surface.triangles.iter().map(|t| line(t).label))?,
-            components: collected(surface.triangles.iter().map(|t| line(t).component))?,
-            ..Self::default()
-        };
-        let normals = normals(&surface.points, &surface.triangles, &fans, execution)?;
-        // Number of each point in the mesh plus one; 0 for points that no triangle uses.
-        let mut number: Vec<u32> = zeros(surface.points.len())?;
-        mesh.triangles = reserved(surface.triangles.len())?;
-        for triangle in &surface.triangles {
-            for p in triangle.map(|p| p as usize) {
-                if number[p] == 0 {
-                    push(&mut mesh.points, surface.points[p].map(|v| v as f32))?;
-                    push(&mut mesh.normals, normals[p].map(|v| v as f32))?;
-                    let thickness = polylines.thickness[surface.source[p] as usize];
-                    push(&mut mesh.thickness, thickness)?;
-                    number[p] = mesh.points.len() as u32;
-                }
-            }
-            mesh.triangles
-                .push(triangle.map(|p| number[p as usize] - 1));
-        }
-        Ok(mesh)
     }
 
     /// Checks that the mesh is a 2-manifold with boundary, consistently wound, with nothing
@@ -281,54 +208,6 @@ pub(crate) fn drop_degenerate(
         make_manifold(surface, execution)?;
     }
     Ok(true)
-}
-
-/// The line each point of the polylines is on.
-fn line_of_points(polylines: &Polylines) -> Result<Vec<usize>> {
-    let mut line_of = zeros(polylines.points.len())?;
-    for (i, line) in polylines.lines.iter().enumerate() {
-        line_of[line.first..line.first + line.count].fill(i);
-    }
-    Ok(line_of)
-}
-
-/// What the low-pass asks about the lines of the points, which are copies of `source`.
-fn lines_of_points(polylines: &Polylines, source: &[u32]) -> Result<Vec<LineOfPoint>> {
-    let mut known = filled(LineOfPoint::default(), polylines.points.len())?;
-    let mut slices: BTreeMap<u32, [i64; 2]> = BTreeMap::new();
-    for line in &polylines.lines {
-        let ends = slices.entry(line.component).or_insert([line.slice; 2]);
-        *ends = [ends[0].min(line.slice), ends[1].max(line.slice)];
-    }
-    for (i, line) in polylines.lines.iter().enumerate() {
-        let range = line.first..line.first + line.count;
-        let points = &polylines.points[range.clone()];
-        let edge = polylines.mean_edge(i..i + 1);
-        let across = unit(area(points));
-        let on_boundary = if line.closed && across != [0.0; 3] {
-            OnBoundary::Within(across)
-        } else {
-            // The end of an open line may lie on the border of the volume.
-            OnBoundary::Stays
-        };
-        for p in range {
-            known[p] = LineOfPoint {
-                edge,
-                on_boundary,
-                room: polylines.border_distance[p].into(),
-                at_end: slices[&line.component].contains(&line.slice),
-            };
-        }
-    }
-    collected(source.iter().map(|&p| known[p as usize]))
-}
-
-/// Twice the area of a closed line, as a vector across its plane (Newell).
-fn area(points: &[Vec3]) -> Vec3 {
-    let around = points.iter().zip(points.iter().cycle().skip(1));
-    around.fold([0.0; 3], |sum, (p, q)| {
-        along(sum, 1.0, cross(sub(*p, points[0]), sub(*q, points[0])))
-    })
 }
 
 /// Turns each connected piece as a whole so that its normals point away from its middle.

@@ -38,7 +38,7 @@ use crate::normals::{normals, NORMAL_PASSES};
 use crate::one_face::{self, add_cut_sheets};
 use crate::profile::Profile;
 use crate::reach::{self, reach};
-use crate::remesh::remesh;
+use crate::remesh::{remesh, wanted_edge, Before};
 use crate::rim::{self, sheet_fraction};
 use crate::rim_smoothing::{self, smooth_rims};
 use crate::scale::{self, HalfThickness};
@@ -51,8 +51,6 @@ use crate::terraces::{flatten_terraces, Filters, LineOfPoint, LowPass, OnBoundar
 use crate::trim::trim;
 use crate::weld::{weld, weld_at_border};
 
-/// The edge length by default, in units of the finest spacing (the paper's step).
-const EDGE_LENGTH: f64 = std::f64::consts::SQRT_2;
 /// How far offsets are followed, in the coarsest spacing.
 const FARTHEST: f64 = 2.0;
 /// Times that neighbouring sheets settle.
@@ -131,17 +129,14 @@ pub(crate) fn ridge_surface(
     in_world(&label, grid, (found, fans), execution)
 }
 
-/// The edge length to aim at, work units.
-pub(crate) fn wanted_edge(edge_length: f64, grid: &Grid) -> f64 {
-    match edge_length {
-        0.0 => EDGE_LENGTH,
-        length => length / grid.unit(),
-    }
-}
-
 /// The surface in new triangles; each point's part stays its source.
 fn remeshed(surface: Surface, wanted: f64, execution: &mut Execution) -> Result<Surface> {
-    let remeshed = remesh(&surface.points, &surface.triangles, wanted, execution)?;
+    let remeshed = remesh(
+        &surface.points,
+        &surface.triangles,
+        (wanted, Before::Any),
+        execution,
+    )?;
     let part_of = |origin: u32| {
         let corner = surface.triangles[origin as usize][0];
         surface.source[corner as usize]
@@ -235,12 +230,9 @@ pub(crate) fn keep_within(grid: &Grid, points: &mut [Vec3]) {
 }
 
 /// What becomes of a point in the mesh.
-fn in_mesh(grid: &Grid) -> impl Fn(Vec3) -> [f32; 3] + Sync + '_ {
-    let h = grid.work_spacing();
-    move |p| {
-        let voxel = std::array::from_fn(|a| p[a] / h[a]);
-        grid.world(voxel).map(|v| v as f32)
-    }
+pub(crate) fn in_mesh(grid: &Grid) -> impl Fn(Vec3) -> [f32; 3] + Sync + '_ {
+    let to_world = grid.work_to_world();
+    move |p| to_world(p).map(|v| v as f32)
 }
 
 /// The sheets of a batch, from the profile's crest to beyond the rims.
@@ -395,8 +387,8 @@ pub(crate) fn in_world(
         let sources = found.triangles.iter().map(|t| found.source[t[0] as usize]);
         sources.map(|part| &label.batch.parts[part as usize])
     };
-    let to_world = |p: &Vec3| grid.world(std::array::from_fn(|a| p[a] / label.h[a]));
-    let points = found.points.iter().map(to_world);
+    let to_world = grid.work_to_world();
+    let points = found.points.iter().copied().map(to_world);
     let directions = normals.iter().map(|n| grid.direction_of(*n));
     Ok(Mesh {
         points: collected(points.map(|p| p.map(|v| v as f32)))?,

@@ -21,10 +21,8 @@ use crate::mask::{self, Mask};
 use crate::mesh::Mesh;
 use crate::midway::{move_midway, Label};
 use crate::mosaic::{kept, wanted};
-use crate::remesh::{remesh_some, Before};
-use crate::ridge_surface::{
-    find_sheets, finish, in_world, keep_within, led_on, trimmed, values, wanted_edge,
-};
+use crate::remesh::{remesh_some, wanted_edge, Before};
+use crate::ridge_surface::{find_sheets, finish, in_world, keep_within, led_on, trimmed, values};
 use crate::rim::{inside, over_inside, smoothed_mask};
 use crate::scale::BrickMeans;
 use crate::seams::used_by;

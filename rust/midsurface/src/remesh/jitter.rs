@@ -3,10 +3,12 @@
 //! What lies along a grid of voxels that are no cubes comes as a lattice of equal cells. In that all edges
 //! of a kind are as long, so that a step changes all of them or none, and a lattice is at rest when its
 //! points move to the middle of their neighbours, though its triangles may be poor. Its points move a little
-//! within the surface first, each its own way, which leaves no such state to end in. All others stay.
+//! within the surface first, each its own way, which leaves no such state to end in. All others stay, but
+//! for those of a surface of rows: of these the lattice may be bent.
 
 use super::blocks::Surface;
 use super::reference::Reference;
+use super::Before;
 use crate::error::{filled, Result};
 use crate::execution::Execution;
 use crate::grid::{squared_distance, sub, Vec3};
@@ -33,12 +35,14 @@ struct Edges {
     sum: Vec3,
 }
 
-/// Moves the inner points of lattices, which are on the reference and stay on it.
+/// Moves the inner points of lattices, or all of a surface of rows, which are on the reference and stay on it.
 pub(super) fn jitter(
     surface: &mut Surface,
+    before: Before,
     reference: &Reference,
     execution: &mut Execution,
 ) -> Result<()> {
+    let is_all = matches!(before, Before::Rows);
     let edges = edges(surface)?;
     let mut moved = filled(Default::default(), edges.len())?;
     let old = &surface.vertices;
@@ -47,7 +51,7 @@ pub(super) fn jitter(
             let (vertex, edges) = (&old[PIECE * piece + i], &edges[PIECE * piece + i]);
             *out = *vertex;
             let is_inner = !vertex.is_boundary() && !vertex.is_frozen();
-            if is_inner && edges.are_a_long_lattice() {
+            if is_inner && (is_all || edges.are_a_long_lattice()) {
                 let step = SHARE * edges.shortest_squared.sqrt();
                 let way = way(vertex.point).map(|v| step * v);
                 let target = std::array::from_fn(|k| vertex.point[k] + way[k]);

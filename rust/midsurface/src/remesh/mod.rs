@@ -39,9 +39,10 @@ mod tests;
 
 use crate::error::{collected, filled, Result};
 use crate::execution::Execution;
-use crate::grid::Vec3;
+use crate::grid::{Grid, Vec3};
 use crate::halfedge::ends;
 use blocks::{Blocks, Surface};
+use jitter::jitter;
 use patch::{Kind, Patch, Vertex};
 use reference::{Place, Reference};
 pub(crate) use repair::SHARP;
@@ -70,11 +71,15 @@ pub(crate) struct Origin {
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Before {
     Any,
+    /// Rows of points, those of each row about as far apart as all others: everywhere nearly a lattice.
+    Rows,
     /// Remeshed already, but for seams: only near these there is something to do, and where a mesh of
     /// triangles twice as large would end at its border those of the final size would be poor.
     Remeshed,
 }
 
+/// The edge length by default, in units of the finest spacing (the paper's step).
+const EDGE_LENGTH: f64 = std::f64::consts::SQRT_2;
 /// Side of a block in edge lengths.
 const BLOCK: f64 = 20.0;
 /// Shifts of the grid of blocks from pass to pass, in sides along each axis.
@@ -91,21 +96,31 @@ const MENDING_PASSES: usize = 4;
 const RELAXATIONS: usize = 4;
 /// Points handed to a worker at a time.
 const PIECE: usize = 4096;
+/// Passes before the first over blocks: leaving a lattice, and halving long edges twice; mostly none is.
+const FIRST_PASSES: usize = 5;
 /// Passes that subdividing makes, repairing, and finding out where the points lie on the reference.
 const OTHER_PASSES: usize = 4;
+
+/// The edge length to aim at, work units; `edge_length` is what is asked for, world units, 0: the default.
+pub(crate) fn wanted_edge(edge_length: f64, grid: &Grid) -> f64 {
+    match edge_length {
+        0.0 => EDGE_LENGTH,
+        length => length / grid.unit(),
+    }
+}
 
 /// Remeshes a consistently wound 2-manifold, with or without boundary, to edges of about
 /// `edge_length`. Lengths are in units of the finest voxel spacing.
 pub(crate) fn remesh(
     points: &[Vec3],
     triangles: &[[u32; 3]],
-    edge_length: f64,
+    (edge_length, before): (f64, Before),
     execution: &mut Execution,
 ) -> Result<Remeshed> {
     remesh_some(
         (points, triangles),
         |_| true,
-        (edge_length, Before::Any),
+        (edge_length, before),
         execution,
     )
 }
@@ -123,19 +138,19 @@ pub(crate) fn remesh_some(
     }
     let twice = 2.0 * edge_length;
     let (coarse, fine, side) = match before {
-        Before::Any => (schedule(twice), FINE_PASSES, BLOCK * twice),
+        Before::Any | Before::Rows => (schedule(twice), FINE_PASSES, BLOCK * twice),
         Before::Remeshed => (Vec::new(), MENDING_PASSES, BLOCK * edge_length),
     };
     let all = coarse.len() + fine;
     let over_blocks = 2 * all;
-    execution.still(reference::PASSES + over_blocks + OTHER_PASSES);
+    execution.still(reference::PASSES + FIRST_PASSES + over_blocks + OTHER_PASSES);
     let reference = Reference::new(points, triangles, edge_length, execution)?;
     let mut surface = start(&reference, is_own)?;
     if let Some(&first) = coarse.first() {
-        jitter::jitter(&mut surface, &reference, execution)?;
+        jitter(&mut surface, before, &reference, execution)?;
         surface = halve_long(surface, first, &reference, execution)?;
-        execution.still(over_blocks + OTHER_PASSES);
     }
+    execution.still(over_blocks + OTHER_PASSES);
     for (number, &longest) in coarse.iter().enumerate() {
         let blocks = Blocks::new(&surface, BLOCK * longest, shift(number), execution)?;
         surface = blocks.work(&surface, &reference, (2.0, longest), execution, improve)?;

@@ -1,7 +1,9 @@
-//! The stages one by one give the one click's mesh exactly.
+//! The stages one by one give the one click's surface, before that is remeshed.
+
+use std::collections::BTreeSet;
 
 use midsurface::{
-    extract, mid_polylines, zip_polylines, Grid, Method, Options, Polylines, Quiet, Volume,
+    extract, mid_polylines, zip_polylines, Grid, Mesh, Method, Options, Polylines, Quiet, Volume,
 };
 use phantoms::*;
 
@@ -25,11 +27,24 @@ fn assert_chain(labels: &[u8], grid: Grid, options: &Options) {
     let zipped = zip_polylines(&lines, options, &mut Quiet::default()).expect("a mesh");
     assert_sound(&whole);
     assert!(!whole.triangles.is_empty());
-    assert!(whole == zipped, "the stages give another mesh");
+    assert_same_surface(&whole, &zipped);
+    let [a, b] = [&whole, &zipped].map(|mesh| mesh.quality().expect("memory").area);
+    assert!((a - b).abs() <= 0.02 * a, "areas {a}, {b}");
+}
+
+/// Whether two meshes have the same pieces, of the same parts.
+pub(crate) fn assert_same_surface(one: &Mesh, other: &Mesh) {
+    let topology = |mesh: &Mesh| connectivity(mesh.points.len(), &mesh.triangles).topology;
+    assert_eq!(topology(one), topology(other));
+    let parts = |mesh: &Mesh| -> BTreeSet<_> {
+        let labels = mesh.labels.iter().copied();
+        labels.zip(mesh.components.iter().copied()).collect()
+    };
+    assert_eq!(parts(one), parts(other));
 }
 
 #[test]
-fn the_chain_gives_the_same_mesh() {
+fn the_chain_gives_the_same_surface() {
     let mut frame = Frame::with_spacing([40, 40, 16], [0.7, 0.7, 1.3]);
     frame.origin = [-31.7, 1e4, 0.3];
     frame.extent_start = [4, 1, -3];

@@ -2,8 +2,8 @@
 
 use midsurface::{
     extract, extract_piece, mid_polylines, mid_polylines_piece, ridge_field, ridge_field_piece,
-    statistics, statistics_of_pieces, zip_polylines_piece, Error, Grid, Mesh, MeshPiece, Method,
-    Observer, Options, Polylines, Result, Statistics, TriangleMesh, Volume,
+    statistics, statistics_of_pieces, zip_polylines, zip_polylines_piece, Error, Grid, Mesh,
+    MeshPiece, Method, Observer, Options, Polylines, Result, Statistics, TriangleMesh, Volume,
 };
 use ndarray::{s, Array3};
 use phantoms::*;
@@ -229,7 +229,7 @@ fn lines_of_pieces_are_those_of_the_whole_and_are_zipped_to_its_mesh() {
     let volume = Volume::new(&labels, whole.clone()).expect("a volume");
     let mut recorder = Recorder::new(usize::MAX);
     let expected = mid_polylines(&volume, options, &mut recorder).expect("lines");
-    let mesh = extract(&volume, options, &mut Recorder::new(usize::MAX)).expect("a mesh");
+    let mesh = zip_polylines(&expected, options, &mut Recorder::new(usize::MAX)).expect("a mesh");
     for counts in [[2, 1, 1], [1, 1, 3], [2, 2, 1]] {
         let pieces = blocks(dimensions, counts, 1);
         let outcomes = in_processes(&labels, whole, &pieces, never, |call| {

@@ -2,7 +2,7 @@ mod shapes;
 
 use shapes::{rectangle, ring, sphere, torus, tube, Shape};
 
-use super::{remesh, Remeshed};
+use super::{remesh, Before, Remeshed};
 use crate::components::DisjointSets;
 use crate::execution::{Execution, Quiet};
 use crate::grid::{cross, dot, length, sub, unit, Vec3};
@@ -12,7 +12,13 @@ use crate::mesh::Mesh;
 fn run(shape: &Shape, edge_length: f64, threads: usize) -> Remeshed {
     let mut quiet = Quiet::default();
     let mut execution = Execution::new(threads, &mut quiet).unwrap();
-    remesh(&shape.points, &shape.triangles, edge_length, &mut execution).unwrap()
+    remesh(
+        &shape.points,
+        &shape.triangles,
+        (edge_length, Before::Any),
+        &mut execution,
+    )
+    .unwrap()
 }
 
 /// Components, Euler number, boundary loops.
