@@ -503,12 +503,15 @@ impl<'a> Pairing<'a> {
 }
 
 /// How far apart two edges of one sheet can be: sheets of one component are farther apart than
-/// they are thick, and an edge's own length is always within reach.
+/// they are thick, and an edge's own length is always within reach. Where slices are farther apart than
+/// voxels within them, so much is added.
 fn reach(side: &SliceEdges, edge: usize, thickness: f64) -> f64 {
     let line = side.line(edge);
     let at = i64::from(side.edges[edge].at);
     let [p, q] = [at, at + 1].map(|i| side.polylines.points[point(line, i) as usize]);
-    1.25 * thickness + 1.5 * length(sub(p, q))
+    let step = |axis: usize| length(side.polylines.voxel_steps.map(|row| row[axis]));
+    let farther = step(2) - step(0).min(step(1));
+    1.25 * thickness + 1.5 * length(sub(p, q)) + farther.max(0.0)
 }
 
 /// `count` edges from `offset` steps beyond `edge`, as points; `sign` −1 walks the line backward.

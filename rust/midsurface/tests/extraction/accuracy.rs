@@ -93,6 +93,23 @@ fn a_tight_tube() {
     assert_all_match(tubes, complete_within(0.15));
 }
 
+#[test]
+fn thin_membranes_in_slices_far_apart() {
+    // Lines of neighbouring slices are farther apart than the membrane is thick.
+    for apart in [3.0, 3.4, 4.0, 5.0] {
+        let frame = Frame::with_spacing([48, 48, 12], [1.0, 1.0, apart]);
+        let leanings = [(0.0, 0.0), (5.0, 20.0), (10.0, 75.0)];
+        let sheets = leanings.iter().flat_map(|&(tilt, azimuth)| {
+            let sheet = |thick| sheet(frame.clone(), leaning(tilt, azimuth), thick, &[]);
+            [1.0, 2.0].map(|thick| (format!("{tilt} degrees, {thick} thick"), sheet(thick)))
+        });
+        let tube = ("tube".to_owned(), tube(frame.clone(), 17.3, 2.0));
+        let membranes = sheets.chain([tube]);
+        let named = membranes.map(|(name, phantom)| (format!("{name}, {apart} apart"), phantom));
+        assert_all_match(named, complete_within(0.12));
+    }
+}
+
 fn sheet_with_a_hole(tilt: f64, azimuth: f64, thickness: f64) -> (String, Phantom) {
     let frame = Frame::new([64; 3]);
     let hole = hole_in_the_middle(&frame, 12.0);
