@@ -106,7 +106,13 @@ impl ZippedSurface {
         keep_within(grid, &mut surface.points);
         drop_degenerate(&mut surface, in_mesh(grid), execution)?;
         let surface = surface.compact()?;
-        let origin = |point: u32| remeshed.origin[surface.source[point as usize] as usize];
+        self.in_triangles_of(surface, &remeshed.origin, grid)?
+            .into_mesh(execution)
+    }
+
+    /// What is known of the surface, on a remeshed one; a point's source is its number in `origin`.
+    fn in_triangles_of(self, surface: Surface, origin: &[Origin], grid: &Grid) -> Result<Self> {
+        let origin = |point: u32| origin[surface.source[point as usize] as usize];
         let thickness = |Origin { triangle, weights }: Origin| -> f32 {
             let corners = self.triangles[triangle as usize].iter().zip(weights);
             corners.map(|(&p, w)| w * self.thickness[p as usize]).sum()
@@ -116,14 +122,13 @@ impl ZippedSurface {
             first_corners.map(|p| origin(p).triangle as usize)
         };
         let count = surface.points.len() as u32;
-        let remeshed = Self {
+        Ok(Self {
             labels: collected(places().map(|triangle| self.labels[triangle]))?,
             components: collected(places().map(|triangle| self.components[triangle]))?,
             thickness: collected((0..count).map(|p| thickness(origin(p))))?,
             points: collected(surface.points.into_iter().map(grid.work_to_world()))?,
             triangles: surface.triangles,
-        };
-        remeshed.into_mesh(execution)
+        })
     }
 
     /// The surface as a mesh.
