@@ -88,6 +88,7 @@ class Spacing(Files):
         _, messages = update(polylines)
         self.assertEqual(len(messages.warnings), 1)
         mesh, _ = update(simple.PolylineZipper(Input=polylines))
+        # A tenth of a voxel of 3: the whole is remeshed.
         np.testing.assert_allclose(whole.GetBounds(), mesh.GetBounds(), atol=0.3)
         field = simple.RidgeField(Input=reader)
         output, messages = update(field)

@@ -727,8 +727,8 @@ enum midsurface_status midsurface_polylines_arrays(const struct midsurface_polyl
 void midsurface_polylines_free(struct midsurface_polylines *polylines);
 
 /**
- * Joins the polylines of neighbouring slices to a mesh. Its points are those of the lines;
- * midsurface_extract remeshes it.
+ * Joins the polylines of neighbouring slices to a mesh. Its points are those of the lines, with the
+ * steps of voxels flattened; midsurface_extract remeshes it.
  *
  * polylines: the polylines; they stay as they are.
  * options: as described there; options.labels and options.edge_length are not looked at.

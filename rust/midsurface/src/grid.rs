@@ -92,7 +92,7 @@ impl Grid {
     /// last bit, cannot change a decision further down.
     pub fn work_spacing(&self) -> Vec3 {
         let unit = self.unit();
-        self.spacing.map(|s| (s / unit * 1e9).round() / 1e9)
+        self.spacing.map(|s| to_nine_digits(s / unit))
     }
 
     /// Whether the image's axes are a mirror image of the world's.
@@ -147,11 +147,14 @@ impl Grid {
             let from_origin = sub(p, self.origin);
             std::array::from_fn(|a| {
                 let index = dot(across[a], from_origin) / volume;
-                let work = h[a] * (index - self.extent_start[a] as f64);
-                (work * 1e9).round() / 1e9
+                to_nine_digits(h[a] * (index - self.extent_start[a] as f64))
             })
         }
     }
+}
+
+fn to_nine_digits(v: f64) -> f64 {
+    (v * 1e9).round() / 1e9
 }
 
 /// The last voxel of a volume, whose first one is the origin, in units of `h`.

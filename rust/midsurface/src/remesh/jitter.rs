@@ -44,23 +44,17 @@ pub(super) fn jitter(
 ) -> Result<()> {
     let is_all = matches!(before, Before::Rows);
     let edges = edges(surface)?;
-    let mut moved = filled(Default::default(), edges.len())?;
-    let old = &surface.vertices;
-    execution.fill(&mut moved, PIECE, |piece, out| {
-        for (i, out) in out.iter_mut().enumerate() {
-            let (vertex, edges) = (&old[PIECE * piece + i], &edges[PIECE * piece + i]);
-            *out = *vertex;
+    execution.fill(&mut surface.vertices, PIECE, |piece, vertices| {
+        for (vertex, edges) in vertices.iter_mut().zip(&edges[PIECE * piece..]) {
             let is_inner = !vertex.is_boundary() && !vertex.is_frozen();
             if is_inner && (is_all || edges.are_a_long_lattice()) {
                 let step = SHARE * edges.shortest_squared.sqrt();
                 let way = way(vertex.point).map(|v| step * v);
                 let target = std::array::from_fn(|k| vertex.point[k] + way[k]);
-                *out = reference.vertex(vertex.at, target);
+                *vertex = reference.vertex(vertex.at, target);
             }
         }
-    })?;
-    surface.vertices = moved;
-    Ok(())
+    })
 }
 
 impl Edges {

@@ -55,7 +55,7 @@ fn edges_are_as_long_as_asked_for() {
         let report = judge(&mesh.points, &mesh.triangles, &sheet);
         let share = report.edge_mean / length;
         assert!((0.8..1.15).contains(&share), "{length}: {report}");
-        // Hardly shorter than the lines' own edges are those rows of equal triangles that nothing mends.
+        // Of edges shorter than the lines' own come rows of equal, longer triangles.
         let least = if length < 1.4 { 0.85 } else { 0.93 };
         assert!(report.quality_mean >= least, "{length}: {report}");
     }
