@@ -19,7 +19,7 @@
 //! | sheets | profile → normal and offset of the sheet at every voxel near it | `crest.rs`, `lag.rs`, `one_face.rs`, `bending.rs`, `extension.rs`, `settle.rs` |
 //! | contour | sheets → a surface through them, cut at the label's rims | `contour.rs`, `rim.rs`, `trim.rs`, `scraps.rs` |
 //! | holes | surface → surface without creases where sheets meet, nor false holes, led on beyond the border of the volume for the while | `creases.rs`, `holes.rs`, `beyond.rs` |
-//! | midway | surface → surface midway between both faces, with smooth rims, led on to where sheets meet | `midway.rs`, `look.rs`, `fairing.rs`, `rim_smoothing.rs`, `reach.rs` |
+//! | midway | surface → surface midway between both faces, with smooth rims, led on to where sheets meet | `midway.rs`, `look.rs`, `fairing.rs`, `rim_smoothing.rs`, `reach.rs`, `meeting.rs` |
 //! | mesh | triangles → nearly equilateral ones, no terraces, no self-intersections | `remesh`, `terraces.rs`, `sharp.rs`, `self_intersections.rs` |
 //!
 //! The polyline zipper is the method of Boneš et al., "MidSurfer: A Parameter-Free Approach for
@@ -85,6 +85,7 @@ mod lots;
 mod manifold;
 mod mask;
 mod measure;
+mod meeting;
 mod mesh;
 mod midway;
 mod mosaic;

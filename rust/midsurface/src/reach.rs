@@ -5,7 +5,8 @@
 //! voxel or two before the line where they do. Its rim there is told from a rim of the label by the
 //! sheet fraction, which is ½ on that and about 1 within. Such a *blind* rim looks ahead along its
 //! sheet, within the label: for a triangle across its way, or for where another blind rim would pass
-//! across it, were it to go on straight. It is then led on straight, to a little before that place.
+//! across it, were it to go on straight. It is then led on to a smooth curve through such places
+//! (`meeting.rs`).
 //! What runs on in the same sheet beyond is not looked for: a slit stays a slit, and so does a tear,
 //! whose ways lead towards each other: their mean would lead out of the sheet, to the one beside it.
 
@@ -16,46 +17,47 @@ use crate::execution::Execution;
 use crate::grid::{along, cross, dot, length, sub, unit, Vec3};
 use crate::halfedge::{ends, previous, Fans, NONE};
 use crate::manifold::Surface;
+use crate::meeting;
 use crate::midway::Label;
 
 /// Sheet fraction from which on a rim is a blind one.
 pub(crate) const WITHIN: f64 = 0.8;
-/// How far a blind rim looks ahead, and how far before what it sees it ends, work units.
+/// How far a blind rim looks ahead, work units.
 const AHEAD: f64 = 6.0;
-const APART: f64 = 0.1;
 /// Sheets cross the way if their normal is at least this cosine off a right angle to it, and other
 /// rims if their ways differ by more than this cosine's angle and are less than opposite.
 const ACROSS: f64 = 0.35;
 const OTHER_WAY: f64 = 0.75;
 const OPPOSITE: f64 = -0.9;
-/// Times that a rim's points, their ways ahead and how far they go are averaged along the rim.
-const POINT_ROUNDS: usize = 2;
-const WAY_ROUNDS: usize = 12;
-const LENGTH_ROUNDS: usize = 3;
-/// A rim is led on this share of the radius in which its ways ahead turn.
-const ROOM: f64 = 0.85;
-/// So many points along a rim take over what those beside them see.
-const TAKEN_OVER: usize = 3;
+/// Times that a rim's points and their ways ahead are averaged along the rim.
+const POINT_ROUNDS: usize = 6;
+pub(crate) const WAY_ROUNDS: usize = 12;
+/// Up to so many points between blind ones are blind, too, where the sheet fraction is at least this.
+const BETWEEN: usize = 3;
+const NEARLY_WITHIN: f64 = 0.6;
 /// Steps in which the way is tried for being in the label, work units.
 const STEP: f64 = 0.5;
-/// A rim that has less to go stays, work units.
+/// A rim that has less to go than this only moves, back by no more than that, work units.
 const LEAST: f64 = 0.05;
+const MOST_BACK: f64 = 0.3;
+/// What is led on leans no more than this off the sheet.
+const LEAN: f64 = 0.25;
 /// Points handed to a worker at a time.
 const PIECE: usize = 1024;
 /// Passes over the points that [`reach`] makes, for its progress.
 pub(crate) const PASSES: usize = 2;
 
 /// A point of a blind rim.
-struct Blind {
-    point: u32,
+pub(crate) struct Blind {
+    pub point: u32,
     /// The points before and after it along the rim, where these are blind, too.
-    beside: [Option<usize>; 2],
+    pub beside: [Option<usize>; 2],
     /// Whether it lies on the border of the volume, for each axis.
-    on_border: [bool; 3],
+    pub on_border: [bool; 3],
     /// Where it is once its rim is straightened a little, since that follows the grid.
-    place: Vec3,
+    pub place: Vec3,
     /// Where it goes: a unit vector within its sheet.
-    way: Vec3,
+    pub way: Vec3,
 }
 
 /// Leads the blind rims of a surface on. `fraction` is the sheet fraction at its points, which have
@@ -72,8 +74,9 @@ pub(crate) fn reach(
         return execution.pass_done();
     }
     straighten(surface, &mut blind, fans)?;
-    let lengths = lengths(label, surface, &blind, fans, execution)?;
-    lead_on(surface, &blind, &lengths)
+    let seen = look_ahead(label, surface, &blind, fans, execution)?;
+    let ends = meeting::ends(&blind, &seen)?;
+    lead_on(surface, &blind, &ends)
 }
 
 /// The points of blind rims, in the order of their numbers. Where a blind rim meets the border of
@@ -93,6 +96,7 @@ fn blind_rims(
             *is_blind = fraction[p] >= WITHIN && fans.is_boundary(triangles, p as u32);
         }
     })?;
+    close_gaps(surface, fraction, fans, &mut is_blind)?;
     let border = |p: u32| label.on_border(surface.points[p as usize]);
     let is_inside = |p: u32| is_blind[p as usize] && !border(p).contains(&true);
     let is_of_rim = |&p: &u32| {
@@ -114,6 +118,37 @@ fn blind_rims(
         }
     });
     collected(found)
+}
+
+/// Makes a few points of a rim blind that lie between blind ones.
+fn close_gaps(
+    surface: &Surface,
+    fraction: &[f64],
+    fans: &Fans,
+    is_blind: &mut [bool],
+) -> Result<()> {
+    let blind = collected((0..is_blind.len() as u32).filter(|&p| is_blind[p as usize]))?;
+    for first in blind {
+        let mut between = [first; BETWEEN];
+        let mut at = first;
+        for k in 0..=BETWEEN {
+            let Some(after) = beside(surface, fans, at)[1] else {
+                break;
+            };
+            if is_blind[after as usize] {
+                between[..k]
+                    .iter()
+                    .for_each(|&p| is_blind[p as usize] = true);
+                break;
+            }
+            if k == BETWEEN || fraction[after as usize] < NEARLY_WITHIN {
+                break;
+            }
+            between[k] = after;
+            at = after;
+        }
+    }
+    Ok(())
 }
 
 /// The points before and after a point of the boundary.
@@ -193,77 +228,6 @@ pub(crate) fn away(surface: &Surface, fans: &Fans, p: u32) -> Vec3 {
     let from = surface.points[p as usize];
     let step = |way, q: u32| along(way, 1.0, sub(from, surface.points[q as usize]));
     around(p).flat_map(around).fold([0.0; 3], step)
-}
-
-/// How far each point of the blind rims goes.
-fn lengths(
-    label: &Label,
-    surface: &Surface,
-    blind: &[Blind],
-    fans: &Fans,
-    execution: &mut Execution,
-) -> Result<Vec<f64>> {
-    let mut seen = look_ahead(label, surface, blind, fans, execution)?;
-    // What a point alone sees is nothing to go by.
-    let is_alone = |own: &Blind| own.beside.iter().flatten().all(|&b| seen[b].is_none());
-    let alone = collected(blind.iter().map(is_alone))?;
-    for (seen, _) in seen.iter_mut().zip(alone).filter(|(_, alone)| *alone) {
-        *seen = None;
-    }
-    let mut known = collected(seen.iter().map(|s| s.map(|s| (s - APART).max(0.0))))?;
-    for _ in 0..TAKEN_OVER {
-        let before = collected(known.iter().copied())?;
-        for (own, known) in blind.iter().zip(&mut known) {
-            let beside = own.beside.iter().filter_map(|b| before[(*b)?]);
-            if known.is_none() {
-                *known = beside.reduce(f64::min);
-            }
-        }
-    }
-    let rooms = rooms(blind)?;
-    let length = |(known, room): (&Option<f64>, &f64)| known.unwrap_or(0.0).min(*room);
-    let mut lengths = collected(known.iter().zip(&rooms).map(length))?;
-    for _ in 0..LENGTH_ROUNDS {
-        lengths = averaged(blind, &lengths, |[a, b, c]| 0.25 * (a + c) + 0.5 * b)?;
-    }
-    for ((length, seen), room) in lengths.iter_mut().zip(&seen).zip(rooms) {
-        let most = seen.map_or(room, |seen| room.min((seen - APART).max(0.0)));
-        *length = length.min(most);
-    }
-    Ok(lengths)
-}
-
-/// How far each point of the blind rims may go: where the ways ahead turn along a rim the strip
-/// would fold, or spread into a fan; that of a tear goes nowhere.
-fn rooms(blind: &[Blind]) -> Result<Vec<f64>> {
-    let mut rooms = filled(f64::INFINITY, blind.len())?;
-    for (b, own) in blind.iter().enumerate() {
-        if is_of_tear(blind, b) {
-            rooms[b] = 0.0;
-        }
-        let Some(after) = own.beside[1] else { continue };
-        let turn = length(sub(blind[after].way, own.way));
-        if turn > 0.0 {
-            let room = ROOM * length(sub(blind[after].place, own.place)) / turn;
-            for point in [b, after] {
-                rooms[point] = rooms[point].min(room);
-            }
-        }
-    }
-    Ok(rooms)
-}
-
-/// Whether the rim of a point comes back to it within as many points as ways are averaged over.
-fn is_of_tear(blind: &[Blind], b: usize) -> bool {
-    let mut at = b;
-    for _ in 0..2 * WAY_ROUNDS {
-        match blind[at].beside[1] {
-            Some(after) if after == b => return true,
-            Some(after) => at = after,
-            None => return false,
-        }
-    }
-    false
 }
 
 /// How far ahead each point of the blind rims sees another sheet.
@@ -385,16 +349,32 @@ fn stays_in_label(label: &Label, surface: &Surface, own: &Blind, far: f64) -> bo
     })
 }
 
-/// Adds a strip of triangles to the blind rims, as wide at each point as it goes.
-fn lead_on(surface: &mut Surface, blind: &[Blind], lengths: &[f64]) -> Result<()> {
+/// The normal of its sheet at a point of a blind rim.
+fn across(blind: &[Blind], b: usize) -> Vec3 {
+    let own = &blind[b];
+    let [before, after] = own.beside.map(|beside| blind[beside.unwrap_or(b)].place);
+    unit(cross(own.way, sub(after, before)))
+}
+
+/// Adds a strip of triangles to the blind rims, up to where each point ends.
+fn lead_on(surface: &mut Surface, blind: &[Blind], ends: &[Option<Vec3>]) -> Result<()> {
     let mut moved = collected(blind.iter().map(|b| b.point))?;
-    for ((own, &length), moved) in blind.iter().zip(lengths).zip(&mut moved) {
-        if length < LEAST {
+    for (b, (end, moved)) in ends.iter().zip(&mut moved).enumerate() {
+        let Some(end) = *end else { continue };
+        let own = &blind[b];
+        let step = sub(end, own.place);
+        let ahead = dot(step, own.way);
+        if ahead < LEAST {
+            let place = along(own.place, ahead.max(-MOST_BACK), own.way);
+            surface.points[own.point as usize] = place;
             continue;
         }
         *moved = surface.points.len() as u32;
         surface.points[own.point as usize] = own.place;
-        push(&mut surface.points, along(own.place, length, own.way))?;
+        let normal = across(blind, b);
+        let (lift, most) = (dot(step, normal), LEAN * ahead);
+        let end = along(end, lift.clamp(-most, most) - lift, normal);
+        push(&mut surface.points, end)?;
         let source = surface.source[own.point as usize];
         push(&mut surface.source, source)?;
     }
@@ -417,33 +397,6 @@ mod tests {
     use super::*;
 
     const ACROSS_X: [Vec3; 3] = [[2.0, -1.0, -1.0], [2.0, 2.0, -1.0], [2.0, -1.0, 2.0]];
-
-    /// A rim of so many points around a hole, with all ways out of the sheet.
-    fn round_rim(count: usize) -> Vec<Blind> {
-        let point = |b: usize| {
-            let angle = std::f64::consts::TAU * b as f64 / count as f64;
-            Blind {
-                point: b as u32,
-                beside: [Some((b + count - 1) % count), Some((b + 1) % count)],
-                on_border: [false; 3],
-                place: [angle.cos(), angle.sin(), 0.0],
-                way: [0.0, 0.0, 1.0],
-            }
-        };
-        (0..count).map(point).collect()
-    }
-
-    #[test]
-    fn the_rim_of_a_tear_goes_nowhere_and_that_of_a_sheet_goes_on() {
-        assert_eq!(rooms(&round_rim(8)).unwrap(), [0.0; 8]);
-        let long = 2 * WAY_ROUNDS + 1;
-        assert_eq!(rooms(&round_rim(long)).unwrap(), vec![f64::INFINITY; long]);
-        // A short rim that ends at two others is none of a tear.
-        let mut open = round_rim(8);
-        open[7].beside[1] = None;
-        open[0].beside[0] = None;
-        assert_eq!(rooms(&open).unwrap(), [f64::INFINITY; 8]);
-    }
 
     #[test]
     fn what_lies_across_the_way_is_met() {
