@@ -6,9 +6,9 @@
 //! sheet fraction, which is ½ on that and about 1 within. Such a *blind* rim looks ahead along its
 //! sheet, within the label: for a triangle across its way, or for where another blind rim would pass
 //! across it, were it to go on straight. It is then led on to a smooth curve through such places
-//! (`meeting.rs`).
-//! What runs on in the same sheet beyond is not looked for: a slit stays a slit, and so does a tear,
-//! whose ways lead towards each other: their mean would lead out of the sheet, to the one beside it.
+//! (`meeting.rs`). What runs on in the same sheet beyond is not looked for: a slit stays a slit, and so
+//! does a tear, whose ways lead towards each other: their mean would lead out of the sheet, to the one
+//! beside it.
 
 use crate::buckets::Buckets;
 use crate::cells::{all_bounds, bounds, near, Cells};
@@ -30,7 +30,7 @@ const ACROSS: f64 = 0.35;
 const OTHER_WAY: f64 = 0.75;
 const OPPOSITE: f64 = -0.9;
 /// Times that a rim's points and their ways ahead are averaged along the rim.
-const POINT_ROUNDS: usize = 6;
+const POINT_ROUNDS: usize = 3;
 pub(crate) const WAY_ROUNDS: usize = 12;
 /// Up to so many points between blind ones are blind, too, where the sheet fraction is at least this.
 const BETWEEN: usize = 3;
@@ -39,7 +39,7 @@ const NEARLY_WITHIN: f64 = 0.6;
 const STEP: f64 = 0.5;
 /// A rim that has less to go than this only moves, back by no more than that, work units.
 const LEAST: f64 = 0.05;
-const MOST_BACK: f64 = 0.3;
+const MOST_BACK: f64 = 0.15;
 /// What is led on leans no more than this off the sheet.
 const LEAN: f64 = 0.25;
 /// Points handed to a worker at a time.
