@@ -136,9 +136,9 @@ fn close_gaps(
                 break;
             };
             if is_blind[after as usize] {
-                between[..k]
-                    .iter()
-                    .for_each(|&p| is_blind[p as usize] = true);
+                for &p in &between[..k] {
+                    is_blind[p as usize] = true;
+                }
                 break;
             }
             if k == BETWEEN || fraction[after as usize] < NEARLY_WITHIN {
@@ -374,6 +374,8 @@ fn lead_on(surface: &mut Surface, blind: &[Blind], ends: &[Option<Vec3>]) -> Res
         let normal = across(blind, b);
         let (lift, most) = (dot(step, normal), LEAN * ahead);
         let end = along(end, lift.clamp(-most, most) - lift, normal);
+        let on_border = |a: usize| own.on_border[a];
+        let end = std::array::from_fn(|a| if on_border(a) { own.place[a] } else { end[a] });
         push(&mut surface.points, end)?;
         let source = surface.source[own.point as usize];
         push(&mut surface.source, source)?;
