@@ -98,15 +98,7 @@ fn lead_to_border(blind: &[Blind], ends: &mut [Option<Vec3>], last: usize) -> Op
     if !(0.0..=FARTHEST).contains(&share) {
         return None;
     }
-    let straight = along(near, share, step);
-    let on_border = |a: usize| own.on_border[a];
-    let end = std::array::from_fn(|a| {
-        if on_border(a) {
-            own.place[a]
-        } else {
-            straight[a]
-        }
-    });
+    let end = own.on_same_border(along(near, share, step));
     for (k, &b) in chain[..STRAIGHT].iter().enumerate() {
         ends[b] = Some(along(end, k as f64 / STRAIGHT as f64, sub(near, end)));
     }

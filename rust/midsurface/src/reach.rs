@@ -60,6 +60,19 @@ pub(crate) struct Blind {
     pub way: Vec3,
 }
 
+impl Blind {
+    /// A place that is put onto the border of the volume where this point lies on that.
+    pub fn on_same_border(&self, p: Vec3) -> Vec3 {
+        std::array::from_fn(|a| {
+            if self.on_border[a] {
+                self.place[a]
+            } else {
+                p[a]
+            }
+        })
+    }
+}
+
 /// Leads the blind rims of a surface on. `fraction` is the sheet fraction at its points, which have
 /// their parts as sources.
 pub(crate) fn reach(
@@ -373,10 +386,8 @@ fn lead_on(surface: &mut Surface, blind: &[Blind], ends: &[Option<Vec3>]) -> Res
         surface.points[own.point as usize] = own.place;
         let normal = across(blind, b);
         let (lift, most) = (dot(step, normal), LEAN * ahead);
-        let end = along(end, lift.clamp(-most, most) - lift, normal);
-        let on_border = |a: usize| own.on_border[a];
-        let end = std::array::from_fn(|a| if on_border(a) { own.place[a] } else { end[a] });
-        push(&mut surface.points, end)?;
+        let leaning = along(end, lift.clamp(-most, most) - lift, normal);
+        push(&mut surface.points, own.on_same_border(leaning))?;
         let source = surface.source[own.point as usize];
         push(&mut surface.source, source)?;
     }
