@@ -1,6 +1,7 @@
 #!/bin/sh
 # Fails where a layer knows what it must not. The core is plain Rust: no host application, no foreign
-# interface, nothing unsafe. The filters are wrappers: no file access, no threads of their own.
+# interface, nothing unsafe. Within it data flows one way: no folder uses what comes after it. The filters
+# are wrappers: no file access, no threads of their own.
 cd "$(dirname "$0")/.." || exit 1
 status=0
 
@@ -26,6 +27,11 @@ forbid '[Vv][Tt][Kk]|[Pp]ara[Vv]iew' 'the core names its host' rust/midsurface
 forbid '(^|[^_a-z])unsafe([^_a-z]|$)|extern "C"|no_mangle' \
   'the core has a foreign interface or unsafe code' $core
 forbid 'std::(fs|net)|(^|[^a-z])e?print(ln)?!' 'the core reads, writes or prints' $core
+later=extraction
+for stage in tiles zipper ridge_surface.rs finish remesh midway contour sheets surface fields reading; do
+  forbid "crate::($later)([^_a-z]|\$)" 'a stage of the core uses a later one' $core/$stage
+  later="$later|${stage%.rs}"
+done
 forbid 'std::(thread|async|fstream|ifstream|ofstream)|vtkSMPTools' \
   'a filter does work that belongs into the core' plugin
 # VTK's wrapping tools read these headers, and programs that use the filters include them.

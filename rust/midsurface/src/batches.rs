@@ -11,13 +11,10 @@ use std::sync::Arc;
 
 use rayon::ThreadPool;
 
-use crate::bricks::Batch;
-use crate::components::Part;
 use crate::error::{collected, push, Result};
 use crate::execution::{Execution, Observer, Quiet};
-use crate::grid::Grid;
-use crate::reading::READING;
-use crate::ridge::{self, RidgeField};
+use crate::fields::bricks::BRICK;
+use crate::reading::components::Part;
 
 /// Batches that are worked on at once.
 const SIDE_BY_SIDE: usize = 2;
@@ -200,25 +197,9 @@ impl Progress {
     }
 }
 
-/// Hands what `work` makes of the parts' ridge fields to `keep`, as [`for_each_batch`]; `stage` is
-/// what that is called.
-pub(crate) fn for_each_ridge_field<'a, R: Send>(
-    all_parts: &'a [Part],
-    grid: &Grid,
-    execution: &mut Execution,
-    (until, stage): (f64, &'static str),
-    work: impl Fn(Batch<'a>, RidgeField, &mut Execution) -> Result<R> + Sync,
-    mut keep: impl FnMut(R) -> Result<()>,
-) -> Result<()> {
-    let h = grid.work_spacing();
-    let work = |parts: &'a [Part], execution: &mut Execution| {
-        execution.stage("Computing the ridge field", 0.0, 0.5, ridge::PASSES)?;
-        let (batch, field) = ridge::ridge_field(parts, grid.dimensions, h, execution)?;
-        execution.stage(stage, 0.5, 1.0, 1)?;
-        work(batch, field, execution)
-    };
-    let span = [until * READING, until];
-    for_each_batch(all_parts, execution, span, work, |_, found| keep(found))
+/// What working on a part takes, in voxels: its own, and the bricks that even a small one has.
+fn cost_of(part: &Part) -> usize {
+    2 * part.voxels() + 2 * BRICK
 }
 
 /// Cuts the parts into batches of whole components.
@@ -226,7 +207,7 @@ fn batches(parts: &[Part]) -> Result<Vec<Range<usize>>> {
     let mut batches = Vec::new();
     let (mut start, mut end, mut cost) = (0, 0, 0);
     for component in parts.chunk_by(|a, b| a.component == b.component) {
-        let size: usize = component.iter().map(Part::cost).sum();
+        let size: usize = component.iter().map(cost_of).sum();
         if cost > 0 && cost + size > BATCH_COST {
             push(&mut batches, start..end)?;
             (start, cost) = (end, 0);

@@ -9,9 +9,9 @@ use rayon::prelude::*;
 use rayon::ThreadPool;
 
 use crate::error::{reserved, Error, Result};
-use crate::exchange::{numbers, text, Team};
 #[cfg(feature = "inject-panics")]
 use crate::injected_panics::visit;
+use crate::processes::exchange::{numbers, text, Team};
 
 /// What the caller of a run is told. Called on the calling thread only.
 pub trait Observer {

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::components::Part;
 use crate::execution::Execution;
 use crate::grid;
 use crate::mesh::Mesh;
+use crate::reading::components::Part;
 
 /// The most labels that a message names.
 pub(crate) const MOST_LISTED: usize = 20;

@@ -135,6 +135,20 @@ impl Grid {
         move |p| self.world(std::array::from_fn(|a| p[a] / h[a]))
     }
 
+    /// What becomes of a point of the work frame in the mesh.
+    pub(crate) fn in_mesh(&self) -> impl Fn(Vec3) -> [f32; 3] + Sync + '_ {
+        let to_world = self.work_to_world();
+        move |p| to_world(p).map(|v| v as f32)
+    }
+
+    /// Puts points that were moved beyond the border of the volume back onto it.
+    pub(crate) fn keep_within(&self, points: &mut [Vec3]) {
+        let last = last_voxel(self.dimensions, self.work_spacing());
+        for p in points {
+            *p = std::array::from_fn(|a| p[a].clamp(0.0, last[a]));
+        }
+    }
+
     /// Work coordinates of a point of the world. Rounded to nine digits, so that the same voxels elsewhere,
     /// which may cost a last bit, cannot change a decision further down.
     pub(crate) fn world_to_work(&self) -> impl Fn(Vec3) -> Vec3 + Sync + '_ {

@@ -1,8 +1,8 @@
 //! Parts in lots: those components that are worked on as a whole, in batches (`batches.rs`), and each one
-//! that is too large for that, in tiles (`tiled_surface.rs`).
+//! that is too large for that, in tiles (`tiles`).
 
-use crate::components::Part;
 use crate::error::{push, Result};
+use crate::reading::components::Part;
 
 /// What is worked on in tiles, and how large these are.
 #[derive(Debug, Clone, Copy)]
@@ -51,7 +51,7 @@ impl Sizes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::runs::Run;
+    use crate::reading::runs::Run;
 
     #[test]
     fn a_large_component_is_a_lot_of_its_own() {

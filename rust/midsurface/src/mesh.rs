@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use crate::components::DisjointSets;
 use crate::error::{check_count, collected, extend, filled, zeros, Error, Result};
 use crate::execution::Execution;
 use crate::grid::{along, cross, dot, length, sub, Vec3};
-use crate::halfedge::{Edges, NONE};
-use crate::manifold::{make_manifold, Surface};
+use crate::reading::components::DisjointSets;
+use crate::surface::halfedge::{Edges, NONE};
+use crate::surface::manifold::{make_manifold, Surface};
 
 /// A triangle mesh: a 2-manifold with boundary, consistently wound in each connected piece.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -96,7 +96,8 @@ impl Mesh {
             match group {
                 [_] => {}
                 [(_, e), (_, f)] => {
-                    let [p, q] = [e, f].map(|h| crate::halfedge::ends(&self.triangles, *h));
+                    let [p, q] =
+                        [e, f].map(|h| crate::surface::halfedge::ends(&self.triangles, *h));
                     if self.sorted(*e) == self.sorted(*f) {
                         return Err(InvariantViolation::Duplicate(*f as usize / 3));
                     }
@@ -157,7 +158,7 @@ impl Mesh {
         for e in 0..twins.len() as u32 {
             let twin = twins[e as usize];
             if twin != NONE {
-                fans.join(e as usize, crate::halfedge::next(twin) as usize);
+                fans.join(e as usize, crate::surface::halfedge::next(twin) as usize);
             }
         }
         let mut fan_of = filled(NONE, self.points.len()).map_err(unchecked)?;

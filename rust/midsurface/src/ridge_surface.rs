@@ -1,55 +1,57 @@
 //! The method "ridge surface": the mid-surface in any orientation.
 //!
-//! Batch by batch: how thick the label is (`scale.rs`), its profile under a Gaussian as wide
-//! (`profile.rs`), the sheets at its crest (`crest.rs`, `lag.rs`) and where a border of the volume
-//! cuts that off (`one_face.rs`), how they bend (`bending.rs`) and on to beyond the rims
-//! (`extension.rs`), a surface through them (`contour.rs`), wound the same way
-//! (`manifold.rs`), cut at the rims (`rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers
-//! (`weld.rs`) and creases where sheets meet (`creases.rs`), closed where it has holes within the
-//! label (`holes.rs`), led on beyond the border of the volume (`beyond.rs`), moved midway between both
-//! faces (`midway.rs`, `look.rs`), made fair where these are not seen (`fairing.rs`), cut at the border,
-//! its rims made smooth (`rim_smoothing.rs`), led on to where sheets meet (`reach.rs`), remeshed (`remesh`), rid
-//! of terraces (`terraces.rs`),
-//! moved a last little step (`midway.rs`), rid of sharp triangles (`sharp.rs`) and self-intersections
-//! (`self_intersections.rs`). How much of the progress a stage is given is how long it took on the
-//! membranes of real cells.
+//! Batch by batch: how thick the label is (`sheets/scale.rs`), its profile under a Gaussian as wide
+//! (`sheets/profile.rs`), the sheets at its crest (`sheets/crest.rs`, `lag.rs`) and where a border of the
+//! volume cuts that off (`one_face.rs`), how they bend (`bending.rs`) and on to beyond the rims
+//! (`extension.rs`); a surface through them (`contour`), wound the same way (`surface/manifold.rs`), cut at
+//! the rims (`contour/rim.rs`, `trim.rs`), rid of scraps (`scraps.rs`) and slivers (`weld.rs`) and creases
+//! where sheets meet (`creases.rs`), closed where it has holes within the label (`holes.rs`); led on beyond
+//! the border of the volume (`midway/beyond.rs`), moved midway between both faces (`midway`, `look.rs`),
+//! made fair where these are not seen (`fairing.rs`), cut at the border, its rims made smooth
+//! (`rim_smoothing.rs`), led on to where sheets meet (`reach.rs`); remeshed (`remesh`); rid of terraces
+//! (`finish/terraces.rs`), moved a last little step (`midway`), rid of sharp triangles (`finish/sharp.rs`)
+//! and self-intersections (`self_intersections.rs`). How much of the progress a stage is given is how long
+//! it took on the membranes of real cells.
 
-use crate::bending;
-use crate::beyond::{cut_at_border, lead_beyond};
-use crate::bricks::Batch;
-use crate::components::Part;
 use crate::contour;
-use crate::creases::{self, cut_creases};
-use crate::crest::{self, core_sheets};
-use crate::distance;
+use crate::contour::creases::{self, cut_creases};
+use crate::contour::holes::{self, close_holes};
+use crate::contour::rim::{self, sheet_fraction};
+use crate::contour::scraps::drop_scraps;
+use crate::contour::trim::trim;
+use crate::contour::weld::{weld, weld_at_border};
 use crate::error::{collected, push, zeros, Result};
 use crate::execution::Execution;
-use crate::extension;
+use crate::fields::bricks::Batch;
+use crate::fields::distance;
+use crate::fields::interpolation::Sampler;
+use crate::fields::label::Label;
+use crate::fields::mask::{self, Mask};
+use crate::finish::lattice::LatticePlane;
+use crate::finish::self_intersections::{self, remove_self_intersections};
+use crate::finish::sharp::{self, widen_all};
+use crate::finish::terraces::{
+    flatten_terraces, Filters, LineOfPoint, LowPass, OnBoundary, STRONG,
+};
 use crate::grid::{last_voxel, on_border, Grid, Vec3};
-use crate::halfedge::Fans;
-use crate::holes::{self, close_holes};
-use crate::interpolation::Sampler;
-use crate::lattice::LatticePlane;
-use crate::manifold::{self, make_manifold, Surface};
-use crate::mask::{self, Mask};
 use crate::mesh::{drop_degenerate, turn_outward, Mesh};
-use crate::midway::{self, move_closer, move_midway, Label};
-use crate::normals::{normals, NORMAL_PASSES};
-use crate::one_face::{self, add_cut_sheets};
-use crate::profile::Profile;
-use crate::reach::{self, reach};
+use crate::midway::beyond::{cut_at_border, lead_beyond};
+use crate::midway::reach::{self, reach};
+use crate::midway::rim_smoothing::{self, smooth_rims};
+use crate::midway::{self, move_closer, move_midway};
+use crate::reading::components::Part;
 use crate::remesh::{remesh, wanted_edge, Before};
-use crate::rim::{self, sheet_fraction};
-use crate::rim_smoothing::{self, smooth_rims};
-use crate::scale::{self, HalfThickness};
-use crate::scraps::drop_scraps;
-use crate::self_intersections::{self, remove_self_intersections};
-use crate::settle::settle;
-use crate::sharp::{self, widen_all};
-use crate::sheet::Sheet;
-use crate::terraces::{flatten_terraces, Filters, LineOfPoint, LowPass, OnBoundary, STRONG};
-use crate::trim::trim;
-use crate::weld::{weld, weld_at_border};
+use crate::sheets::bending;
+use crate::sheets::crest::{self, core_sheets};
+use crate::sheets::extension;
+use crate::sheets::one_face::{self, add_cut_sheets};
+use crate::sheets::profile::Profile;
+use crate::sheets::scale::{self, HalfThickness};
+use crate::sheets::settle::settle;
+use crate::sheets::sheet::Sheet;
+use crate::surface::halfedge::Fans;
+use crate::surface::manifold::{self, make_manifold, Surface};
+use crate::surface::normals::{normals, NORMAL_PASSES};
 
 /// How far offsets are followed, in the coarsest spacing.
 const FARTHEST: f64 = 2.0;
@@ -124,7 +126,7 @@ pub(crate) fn ridge_surface(
     execution.stage("Remeshing", 0.65, 0.94, 1)?;
     let wanted = wanted_edge(edge_length, grid);
     let mut found = remeshed(surface, wanted, execution)?;
-    keep_within(grid, &mut found.points);
+    grid.keep_within(&mut found.points);
     let (found, fans) = finish(&label, found, grid, wanted, execution)?;
     in_world(&label, grid, (found, fans), execution)
 }
@@ -164,7 +166,7 @@ pub(crate) fn finish(
         + sharp::PASSES
         + self_intersections::PASSES;
     execution.stage("Flattening terraces", 0.94, 1.0, passes)?;
-    drop_degenerate(&mut found, in_mesh(grid), execution)?;
+    drop_degenerate(&mut found, grid.in_mesh(), execution)?;
     let mut found = found.compact()?;
     let fans = Fans::new(&found.triangles, found.points.len())?;
     flatten(&mut found, &fans, (wanted, grid), execution)?;
@@ -174,8 +176,8 @@ pub(crate) fn finish(
     widen_all(&mut found, &fans, last, execution)?;
     let component = |part: u32| label.batch.parts[part as usize].component;
     let fans = remove_self_intersections(&mut found, fans, &component, (wanted, last), execution)?;
-    keep_within(grid, &mut found.points);
-    if !drop_degenerate(&mut found, in_mesh(grid), execution)? {
+    grid.keep_within(&mut found.points);
+    if !drop_degenerate(&mut found, grid.in_mesh(), execution)? {
         return Ok((found, fans));
     }
     let found = found.compact()?;
@@ -219,20 +221,6 @@ fn flatten(
         (FILTERS.on_spacing(h), &LATTICE),
         execution,
     )
-}
-
-/// Puts points that were moved beyond the border of the volume back onto it.
-pub(crate) fn keep_within(grid: &Grid, points: &mut [Vec3]) {
-    let last = last_voxel(grid.dimensions, grid.work_spacing());
-    for p in points {
-        *p = std::array::from_fn(|a| p[a].clamp(0.0, last[a]));
-    }
-}
-
-/// What becomes of a point in the mesh.
-pub(crate) fn in_mesh(grid: &Grid) -> impl Fn(Vec3) -> [f32; 3] + Sync + '_ {
-    let to_world = grid.work_to_world();
-    move |p| to_world(p).map(|v| v as f32)
 }
 
 /// The sheets of a batch, from the profile's crest to beyond the rims.

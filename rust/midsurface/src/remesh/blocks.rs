@@ -9,7 +9,7 @@ use super::patch::{Patch, Vertex};
 use super::reference::Reference;
 use crate::error::{check_count, collected, extend, filled, push, reserved, zeros, Result};
 use crate::execution::Execution;
-use crate::halfedge::NONE;
+use crate::surface::halfedge::NONE;
 
 /// Triangles handed to a worker at a time.
 const PIECE: usize = 4096;

@@ -8,7 +8,7 @@ use super::patch::{Kind, Patch};
 use super::shape::{facing, squared_sine};
 use crate::error::{collected, Result};
 use crate::grid::squared_distance;
-use crate::halfedge::{next, previous, NONE};
+use crate::surface::halfedge::{next, previous, NONE};
 
 /// An edge this much shorter than wanted is collapsed (Botsch and Kobbelt 2004).
 const SHORT: f64 = 4.0 / 5.0;

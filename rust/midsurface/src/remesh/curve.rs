@@ -9,7 +9,7 @@ use super::patch::{Kind, Vertex};
 use super::reference::Reference;
 use crate::error::{collected, extend, filled, push, Result};
 use crate::grid::{along, dot, length, sub, unit, Vec3};
-use crate::halfedge::{ends, NONE};
+use crate::surface::halfedge::{ends, NONE};
 
 /// Lengths over which the direction of the boundary is compared, to find corners: a corner is one
 /// over both, a step in a ragged rim over the shorter one only.

@@ -5,7 +5,7 @@ use super::patch::{Kind, Patch};
 use super::polish::POOR;
 use super::shape::{facing, sine_of_smallest_angle};
 use crate::grid::squared_distance;
-use crate::halfedge::NONE;
+use crate::surface::halfedge::NONE;
 
 /// A flip for the sake of valence may not leave an angle below this sine's (15°), unless one was
 /// there before.

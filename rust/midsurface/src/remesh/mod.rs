@@ -40,7 +40,7 @@ mod tests;
 use crate::error::{collected, filled, Result};
 use crate::execution::Execution;
 use crate::grid::{Grid, Vec3};
-use crate::halfedge::ends;
+use crate::surface::halfedge::ends;
 use blocks::{Blocks, Surface};
 use jitter::jitter;
 use patch::{Kind, Patch, Vertex};

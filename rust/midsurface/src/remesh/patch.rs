@@ -8,7 +8,7 @@
 use super::reference::Reference;
 use crate::error::{extend, filled, push, reserve, reserved, zeros, Result};
 use crate::grid::Vec3;
-use crate::halfedge::{next, previous, twins_if_wound, NONE};
+use crate::surface::halfedge::{next, previous, twins_if_wound, NONE};
 
 /// Where a point may go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

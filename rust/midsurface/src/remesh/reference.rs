@@ -12,8 +12,8 @@ use super::sizing;
 use crate::error::{zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{along, dot, sub, unit, Vec3};
-use crate::halfedge::{Fans, NONE};
-use crate::normals::normal_of_fan;
+use crate::surface::halfedge::{Fans, NONE};
+use crate::surface::normals::normal_of_fan;
 
 /// Items handed to a worker at a time.
 const PIECE: usize = 4096;

@@ -21,7 +21,7 @@ use super::shape::{facing, sine_of_smallest_angle};
 use super::split::near_middle;
 use crate::error::{collected, reserved, zeros, Result};
 use crate::execution::Execution;
-use crate::halfedge::{next, previous, NONE};
+use crate::surface::halfedge::{next, previous, NONE};
 
 /// Triangles up to this many edges from a fault are taken out with it.
 const RINGS: u8 = 3;

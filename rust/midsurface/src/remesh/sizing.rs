@@ -14,8 +14,8 @@ use crate::buckets::{self, Buckets};
 use crate::error::{collected, refused, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::{dot, length, sub, Vec3};
-use crate::halfedge::{ends, Fans};
-use crate::normals::average_normals;
+use crate::surface::halfedge::{ends, Fans};
+use crate::surface::normals::average_normals;
 
 /// How far a flat triangle may be from the surface, in units of the finest spacing.
 const CHORD: f64 = 0.1;

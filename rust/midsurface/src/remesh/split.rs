@@ -4,7 +4,7 @@ use super::patch::{Patch, Vertex};
 use super::reference::Reference;
 use crate::error::Result;
 use crate::grid::{squared_distance, Vec3};
-use crate::halfedge::NONE;
+use crate::surface::halfedge::NONE;
 
 /// An edge this much longer than wanted is split (Botsch and Kobbelt 2004): its halves are then as
 /// much too short as it was too long.

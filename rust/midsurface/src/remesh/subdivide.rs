@@ -11,7 +11,7 @@ use super::split::{middle_anyway, LONG};
 use crate::error::{check_count, filled, push, reserved, zeros, Result};
 use crate::execution::Execution;
 use crate::grid::squared_distance;
-use crate::halfedge::{ends, next, previous, twins_if_wound, NONE};
+use crate::surface::halfedge::{ends, next, previous, twins_if_wound, NONE};
 
 /// Edges or triangles handed to a worker at a time.
 const PIECE: usize = 4096;

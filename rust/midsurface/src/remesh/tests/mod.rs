@@ -3,11 +3,11 @@ mod shapes;
 use shapes::{rectangle, ring, sphere, torus, tube, Shape};
 
 use super::{remesh, Before, Remeshed};
-use crate::components::DisjointSets;
 use crate::execution::{Execution, Quiet};
 use crate::grid::{cross, dot, length, sub, unit, Vec3};
-use crate::halfedge::{ends, twins_if_wound, NONE};
 use crate::mesh::Mesh;
+use crate::reading::components::DisjointSets;
+use crate::surface::halfedge::{ends, twins_if_wound, NONE};
 
 fn run(shape: &Shape, edge_length: f64, threads: usize) -> Remeshed {
     let mut quiet = Quiet::default();
