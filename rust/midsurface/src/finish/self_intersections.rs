@@ -139,19 +139,9 @@ fn touching(
         boxes.iter().enumerate().flat_map(of)
     };
     let in_cell = Buckets::new(cells.count(), entries)?;
-    let is_same = |p: u32, q: u32| {
-        component(surface.source[p as usize]) == component(surface.source[q as usize])
-    };
     let touches = |t: u32, rim: u32| {
-        let [a, b] = [t, rim].map(|t| surface.triangles[t as usize]);
-        if !is_same(a[0], b[0]) {
-            return false;
-        }
-        if [t, rim].iter().any(|&t| ring(surface, rings, t) == 0) {
-            return touch(a, b, &surface.points, TOUCHING);
-        }
-        let meet = a.iter().any(|p| b.contains(p));
-        !(meet && face_alike(surface, [a, b])) && touch(a, b, &surface.points, CROSSING)
+        let part = |t: u32| surface.source[surface.triangles[t as usize][0] as usize];
+        component(part(t)) == component(part(rim)) && touches(surface, rings, t, rim)
     };
     let pieces = collected(among.chunks(PIECE))?;
     let mut pairs = Vec::new();
@@ -181,6 +171,16 @@ fn touching(
     )?;
     pairs.sort_unstable();
     Ok(pairs)
+}
+
+/// Whether a triangle touches one near a rim; what is no rim's own has to cross it.
+fn touches(surface: &Surface, rings: &[Ring], t: u32, rim: u32) -> bool {
+    let [a, b] = [t, rim].map(|t| surface.triangles[t as usize]);
+    if [t, rim].iter().any(|&t| ring(surface, rings, t) == 0) {
+        return touch(a, b, &surface.points, TOUCHING);
+    }
+    let meet = a.iter().any(|p| b.contains(p));
+    !(meet && face_alike(surface, [a, b])) && touch(a, b, &surface.points, CROSSING)
 }
 
 /// Keeps the pairs with a triangle at a rim, if there are any: what touches behind a rim may be rid of

@@ -14,13 +14,14 @@ use rayon::prelude::*;
 use crate::error::{collected, filled, zeros, Result};
 use crate::execution::Execution;
 use crate::fields::block::{matrix_at, vector_at, Block, Row};
-use crate::fields::bricks::{Batch, Directory, BRICK, EDGE, LAYER};
+use crate::fields::bricks::{Batch, BRICK, EDGE, LAYER};
 use crate::fields::eigen::{eigenvalues, eigenvector};
 use crate::fields::interpolation::Sampler;
 use crate::fields::separable::Kernel;
 use crate::fields::slabs::{smooth_in_slabs, Bricks};
 use crate::fields::vectors::with_widest_vectors;
-use crate::grid::{dot as dot3, last_voxel, Vec3};
+use crate::grid::Vec3;
+use crate::sheets::border::Border;
 use crate::sheets::lag::{self, turn_lagging};
 use crate::sheets::profile::{Derivatives, Profile};
 use crate::sheets::sheet::{dot, is_trusted, source, unshrink, voxel_along, Sheet, ENTRIES};
@@ -64,22 +65,27 @@ pub(crate) fn core_sheets(
     let sigma = execution.collect(bricks, |brick| mean_sigma(&profile, batch, brick))?;
     let mut sheets: Vec<Sheet> = zeros(bricks * BRICK)?;
     let mut weight = batch.field()?;
-    let label = (batch, distance, farthest, h);
-    let mut find = |wanted: &[bool], bent, sheets: &mut [Sheet]| {
-        let of_sheets = (sheets, &mut weight[..]);
-        find(
-            label,
-            &profile,
-            &sigma,
-            (wanted, bent),
-            of_sheets,
-            execution,
-        )
+    let everywhere = filled(true, bricks)?;
+    let core = Core {
+        batch,
+        distance,
+        profile: &profile,
+        sigma: &sigma,
+        farthest,
+        h,
+        wanted: &everywhere,
+        bent: BENT,
     };
-    find(&filled(true, bricks)?, BENT, &mut sheets)?;
+    core.find((&mut sheets, &mut weight), execution)?;
     let ribbons = bricks_without_core(batch, &sheets)?;
     if ribbons.contains(&true) {
-        find(&ribbons, RIBBON, &mut sheets)?;
+        let (wanted, bent) = (&ribbons[..], RIBBON);
+        let core = Core {
+            wanted,
+            bent,
+            ..core
+        };
+        core.find((&mut sheets, &mut weight), execution)?;
     }
     let known = (&profile, &sigma[..], &weight[..]);
     turn_lagging(batch, known, farthest, h, &mut sheets, execution)?;
@@ -100,34 +106,72 @@ fn bricks_without_core(batch: &Batch, sheets: &[Sheet]) -> Result<Vec<bool>> {
     collected(parts.map(|&part| !has_core[part as usize]))
 }
 
-/// Finds the sheets of the core voxels of the `wanted` bricks, bent by at most `bent`, and what
-/// tensors were smoothed from there.
-fn find(
-    (batch, distance, farthest, h): (&Batch, &[f32], f32, Vec3),
-    profile: &Profile,
-    sigma: &[f32],
-    (wanted, bent): (&[bool], f32),
-    (sheets, weight): (&mut [Sheet], &mut [f32]),
-    execution: &mut Execution,
-) -> Result<()> {
-    let border = |brick: usize| Border::near(batch, brick, distance, REACH * sigma[brick], h);
-    let make = |brick: usize, tensors: &mut [f32]| {
-        let own = &distance[brick * BRICK..][..BRICK];
-        if !wanted[brick] || own.iter().all(|d| *d == 0.0) {
+/// What the sheets of core voxels are found from.
+#[derive(Clone, Copy)]
+struct Core<'a> {
+    batch: &'a Batch<'a>,
+    distance: &'a [f32],
+    profile: &'a Profile,
+    /// Mean σ of each brick.
+    sigma: &'a [f32],
+    farthest: f32,
+    h: Vec3,
+    /// The bricks in which they are looked for, and by how much they are bent at most.
+    wanted: &'a [bool],
+    bent: f32,
+}
+
+impl Core<'_> {
+    /// Finds the sheets, and what tensors were smoothed from there.
+    fn find(
+        &self,
+        (sheets, weight): (&mut [Sheet], &mut [f32]),
+        execution: &mut Execution,
+    ) -> Result<()> {
+        let make = |brick: usize, tensors: &mut [f32]| self.make_tensors(brick, tensors);
+        let (mut sheets, mut weight) = (Bricks::of(sheets)?, Bricks::of(weight)?);
+        let take = |bricks: &[u32], tensors: &[f32], execution: &Execution| {
+            let (sheets, weight) = (sheets.take(bricks)?, weight.take(bricks)?);
+            execution.in_pool(|| {
+                let tensors = tensors.par_chunks_exact(ENTRIES * BRICK);
+                let out = sheets.into_par_iter().zip(weight);
+                let all = bricks.par_iter().zip(tensors).zip(out);
+                all.for_each(|((&brick, tensors), (sheets, weight))| {
+                    self.find_in(brick as usize, tensors, sheets, weight);
+                });
+            });
+            Ok(())
+        };
+        let kernels = tensor_kernels(self.batch, self.h);
+        let kernel_of = |brick: usize| {
+            let ratio = rho(self.sigma[brick]) / RHO_BOUNDS[0];
+            let step = (ratio.log2() / RHO_STEP.log2()).round();
+            self.wanted[brick].then(|| &kernels[step as usize])
+        };
+        let size = ENTRIES * BRICK;
+        smooth_in_slabs(self.batch, kernel_of, size, make, take, execution)
+    }
+
+    /// Fills in the tensors of a brick before they are smoothed.
+    fn make_tensors(&self, brick: usize, tensors: &mut [f32]) {
+        let own = self.label(brick);
+        if !self.wanted[brick] || own.iter().all(|d| *d == 0.0) {
             return;
         }
-        let border = border(brick);
+        let border = self.border(brick);
         with_widest_vectors(
             #[inline(always)]
             || {
-                let wanted = |row: usize| row_of(own, row).iter().any(|d| *d > 0.0);
-                let derivatives = profile.derivatives(batch, brick, wanted, h);
-                find_tensors(&derivatives, own, border.as_ref(), (bent, h), tensors);
+                let derivatives = self.derivatives(brick, own);
+                let bounds = (self.bent, self.h);
+                find_tensors(&derivatives, own, border.as_ref(), bounds, tensors);
             },
         );
-    };
-    let find = |brick: usize, tensors: &[f32], sheets: &mut [Sheet], weight: &mut [f32]| {
-        if !wanted[brick] {
+    }
+
+    /// Finds the sheets in a brick from its tensors.
+    fn find_in(&self, brick: usize, tensors: &[f32], sheets: &mut [Sheet], weight: &mut [f32]) {
+        if !self.wanted[brick] {
             return;
         }
         if tensors.iter().any(|v| *v != 0.0) {
@@ -136,7 +180,7 @@ fn find(
                 || find_weights(tensors, weight),
             );
         }
-        let near = Block::gather(batch, brick, distance);
+        let near = Block::gather(self.batch, brick, self.distance);
         if near.values.iter().all(|d| *d == 0.0) {
             return;
         }
@@ -144,40 +188,38 @@ fn find(
             #[inline(always)]
             || {
                 let near = near.largest_near();
-                let wanted = |row: usize| row_of(&near, row).iter().any(|d| *d > 0.0);
-                let derivatives = profile.derivatives(batch, brick, wanted, h);
-                let label = (&distance[brick * BRICK..][..BRICK], &near[..]);
-                find_sheets(&derivatives, tensors, label, (farthest, bent, h), sheets);
+                let derivatives = self.derivatives(brick, &near);
+                let label = (self.label(brick), &near[..]);
+                let bounds = (self.farthest, self.bent, self.h);
+                find_sheets(&derivatives, tensors, label, bounds, sheets);
             },
         );
-        drop_unfounded((batch, brick), distance, h, sheets);
-        if let Some(border) = border(brick) {
+        drop_unfounded((self.batch, brick), self.distance, self.h, sheets);
+        if let Some(border) = self.border(brick) {
             for (i, sheet) in sheets.iter_mut().enumerate() {
                 if border.cuts(i, [sheet[0], sheet[1], sheet[2]]) {
                     *sheet = Sheet::default();
                 }
             }
         }
-    };
-    let (mut sheets, mut weight) = (Bricks::of(sheets)?, Bricks::of(weight)?);
-    let take = |bricks: &[u32], tensors: &[f32], execution: &Execution| {
-        let (sheets, weight) = (sheets.take(bricks)?, weight.take(bricks)?);
-        execution.in_pool(|| {
-            let tensors = tensors.par_chunks_exact(ENTRIES * BRICK);
-            let out = sheets.into_par_iter().zip(weight);
-            let all = bricks.par_iter().zip(tensors).zip(out);
-            all.for_each(|((&brick, tensors), (sheets, weight))| {
-                find(brick as usize, tensors, sheets, weight);
-            });
-        });
-        Ok(())
-    };
-    let kernels = tensor_kernels(batch, h);
-    let kernel_of = |brick: usize| {
-        let step = ((rho(sigma[brick]) / RHO_BOUNDS[0]).log2() / RHO_STEP.log2()).round();
-        wanted[brick].then(|| &kernels[step as usize])
-    };
-    smooth_in_slabs(batch, kernel_of, ENTRIES * BRICK, make, take, execution)
+    }
+
+    /// Distance to the outside at the voxels of a brick.
+    fn label(&self, brick: usize) -> &[f32] {
+        &self.distance[brick * BRICK..][..BRICK]
+    }
+
+    /// The profile's derivatives in those rows of a brick in which `field` is positive.
+    #[inline(always)]
+    fn derivatives(&self, brick: usize, field: &[f32]) -> Vec<Derivatives> {
+        let wanted = |row: usize| row_of(field, row).iter().any(|d| *d > 0.0);
+        self.profile.derivatives(self.batch, brick, wanted, self.h)
+    }
+
+    fn border(&self, brick: usize) -> Option<Border<'_>> {
+        let reach = REACH * self.sigma[brick];
+        Border::near(self.batch, brick, self.distance, reach, self.h)
+    }
 }
 
 /// Mean σ of a brick's voxels that have one; 0 where none has.
@@ -191,79 +233,6 @@ fn mean_sigma(profile: &Profile, batch: &Batch, brick: usize) -> f32 {
         sum / count as f32
     } else {
         0.0
-    }
-}
-
-/// The borders of the volume as seen from a brick.
-struct Border<'a> {
-    directory: &'a Directory,
-    place: [usize; 3],
-    distance: &'a [f32],
-    /// How near by a border cuts the profile of a sheet at right angles to it, work units.
-    reach: f32,
-    h: Vec3,
-}
-
-impl<'a> Border<'a> {
-    /// `None` where no border is near enough to cut a sheet of the brick.
-    fn near(
-        batch: &'a Batch,
-        brick: usize,
-        distance: &'a [f32],
-        reach: f32,
-        h: Vec3,
-    ) -> Option<Self> {
-        let (directory, place) = batch.brick(brick);
-        let last = last_voxel(directory.dimensions, h);
-        let is_near = (0..3).any(|a| {
-            let first = (place[a] * EDGE) as f64 * h[a];
-            first.min(last[a] - first - EDGE as f64 * h[a]) < f64::from(4.0 * reach)
-        });
-        is_near.then_some(Self {
-            directory,
-            place,
-            distance,
-            reach,
-            h,
-        })
-    }
-
-    /// Whether the sheet through voxel i with normal n leaves the volume so near by that the profile
-    /// misses a part of it: along a sheet at right angles to the border nothing is missed.
-    fn cuts(&self, i: usize, n: [f32; 3]) -> bool {
-        let Self {
-            directory, place, ..
-        } = self;
-        let n = n.map(f64::from);
-        let within = [i % EDGE, i / EDGE % EDGE, i / LAYER];
-        let length = dot3(n, n).sqrt();
-        let n = n.map(|v| v / length.max(1e-12));
-        let p: Vec3 = std::array::from_fn(|a| (place[a] * EDGE + within[a]) as f64 * self.h[a]);
-        let last = last_voxel(directory.dimensions, self.h);
-        (0..3).any(|a| {
-            let (to_border, out) = if p[a] < last[a] - p[a] {
-                (p[a], -1.0)
-            } else {
-                (last[a] - p[a], 1.0)
-            };
-            if to_border >= f64::from(self.reach) * n[a].abs() {
-                return false;
-            }
-            // From here along the sheet to the border: is the label still there?
-            let slope = 1.0 - n[a] * n[a];
-            let steps = to_border / slope.max(1e-12);
-            if steps * slope.sqrt() > 2.0 * f64::from(self.reach) {
-                return false;
-            }
-            let voxel = std::array::from_fn(|b| {
-                let along = f64::from(u8::from(a == b)) - n[a] * n[b];
-                let at = (p[b] + out * steps * along) / self.h[b];
-                at.round().clamp(0.0, directory.dimensions[b] as f64 - 1.0) as usize
-            });
-            directory
-                .entry(voxel)
-                .is_some_and(|entry| self.distance[entry] > 0.0)
-        })
     }
 }
 

@@ -94,6 +94,36 @@ fn orient(
     twins: &mut Vec<u32>,
     execution: &mut Execution,
 ) -> Result<()> {
+    let turned = like_the_first(triangles, twins)?;
+    // Corner order (0, 1, 2) becomes (0, 2, 1): edges 01, 12, 20 become 02, 21, 10.
+    let moved = |e: u32| {
+        if turned[e as usize / 3] == Some(true) {
+            3 * (e / 3) + 2 - e % 3
+        } else {
+            e
+        }
+    };
+    let mut moved_twins: Vec<u32> = zeros(twins.len())?;
+    execution.fill(&mut moved_twins, PIECE, |piece, out| {
+        for (i, twin) in out.iter_mut().enumerate() {
+            *twin = match twins[moved((piece * PIECE + i) as u32) as usize] {
+                NONE => NONE,
+                twin => moved(twin),
+            };
+        }
+    })?;
+    *twins = moved_twins;
+    for (triangle, turned) in triangles.iter_mut().zip(&turned) {
+        if *turned == Some(true) {
+            triangle.swap(1, 2);
+        }
+    }
+    Ok(())
+}
+
+/// Whether each triangle has to be turned to be wound like the first one of its piece, all of them known;
+/// cuts the edges of those that disagree.
+fn like_the_first(triangles: &[[u32; 3]], twins: &mut [u32]) -> Result<Vec<Option<bool>>> {
     let mut turned = filled(None, triangles.len())?;
     let mut stack = Vec::new();
     for seed in 0..triangles.len() {
@@ -125,30 +155,7 @@ fn orient(
             }
         }
     }
-    // Corner order (0, 1, 2) becomes (0, 2, 1): edges 01, 12, 20 become 02, 21, 10.
-    let moved = |e: u32| {
-        if turned[e as usize / 3] == Some(true) {
-            3 * (e / 3) + 2 - e % 3
-        } else {
-            e
-        }
-    };
-    let mut moved_twins: Vec<u32> = zeros(twins.len())?;
-    execution.fill(&mut moved_twins, PIECE, |piece, out| {
-        for (i, twin) in out.iter_mut().enumerate() {
-            *twin = match twins[moved((piece * PIECE + i) as u32) as usize] {
-                NONE => NONE,
-                twin => moved(twin),
-            };
-        }
-    })?;
-    *twins = moved_twins;
-    for (triangle, turned) in triangles.iter_mut().zip(&turned) {
-        if *turned == Some(true) {
-            triangle.swap(1, 2);
-        }
-    }
-    Ok(())
+    Ok(turned)
 }
 
 /// Gives each fan of triangles around a point a point of its own.

@@ -64,20 +64,7 @@ pub(crate) fn ridge_field<'a>(
     let mut fraction = smooth(&batch, &kernels, mask, &mut scratch, execution)?;
     let copy = of_distance(&distance, |d| d, execution)?;
     let thick = local_maximum(&batch, &kernels, copy, &mut scratch, execution)?;
-    execution.fill(&mut fraction, BRICK, |brick, fraction| {
-        let sigma = scales[batch.part_of_brick[brick] as usize];
-        // Neighbours mostly have the same maximum.
-        let (mut latest, mut endless) = (f32::NAN, 1.0);
-        for (fraction, &thick) in fraction.iter_mut().zip(&thick[brick * BRICK..]) {
-            if *fraction == 0.0 {
-                continue;
-            }
-            if thick != latest {
-                (latest, endless) = (thick, endless_sheet(thick, sigma));
-            }
-            *fraction /= endless;
-        }
-    })?;
+    over_endless_sheet((&batch, &scales), &thick, &mut fraction, execution)?;
     drop(thick);
     let mut sheets = sheets(
         &batch,
@@ -103,6 +90,29 @@ pub(crate) fn ridge_field<'a>(
         sheets,
     };
     Ok((batch, field))
+}
+
+/// Divides the smoothed mask by that of an endless sheet as thick as the label is here.
+fn over_endless_sheet(
+    (batch, scales): (&Batch, &[f64]),
+    thick: &[f32],
+    fraction: &mut [f32],
+    execution: &mut Execution,
+) -> Result<()> {
+    execution.fill(fraction, BRICK, |brick, fraction| {
+        let sigma = scales[batch.part_of_brick[brick] as usize];
+        // Neighbours mostly have the same maximum.
+        let (mut latest, mut endless) = (f32::NAN, 1.0);
+        for (fraction, &thick) in fraction.iter_mut().zip(&thick[brick * BRICK..]) {
+            if *fraction == 0.0 {
+                continue;
+            }
+            if thick != latest {
+                (latest, endless) = (thick, endless_sheet(thick, sigma));
+            }
+            *fraction /= endless;
+        }
+    })
 }
 
 /// Tells of components for which σ had to be bounded.
