@@ -9,6 +9,7 @@ use super::patch::{Patch, Vertex};
 use super::reference::Reference;
 use crate::error::{check_count, collected, extend, filled, push, reserved, zeros, Result};
 use crate::execution::Execution;
+use crate::grid::floor;
 use crate::surface::halfedge::NONE;
 
 /// Triangles handed to a worker at a time.
@@ -237,7 +238,7 @@ fn keys(
             for k in [2, 1, 0] {
                 let centre = (a[k] + b[k] + c[k]) / 3.0;
                 // 21 bits an axis, around 0.
-                let cell = (centre / side + shift[k]).floor() as i64 + (1 << 20);
+                let cell = floor(centre / side + shift[k]) as i64 + (1 << 20);
                 *key = *key << 21 | (cell as u64 & 0x1f_ffff);
             }
         }

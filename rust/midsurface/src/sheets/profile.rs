@@ -240,9 +240,10 @@ fn sigma(level: f32) -> f32 {
     FIRST * RATIO.powf(level)
 }
 
-/// The levels that a voxel blends, a bit each.
+/// The levels that a voxel blends, a bit each. Whole numbers by a cast, as in [`crate::grid::floor`].
 fn levels_of(level: f32) -> u8 {
-    1 << level.floor() as u8 | 1 << level.ceil() as u8
+    let below = level as u8;
+    1 << below | 1 << (below + u8::from(f32::from(below) < level))
 }
 
 /// Rings of bricks that a level's filter reaches into.
