@@ -27,6 +27,7 @@ forbid '[Vv][Tt][Kk]|[Pp]ara[Vv]iew' 'the core names its host' rust/midsurface
 forbid '(^|[^_a-z])unsafe([^_a-z]|$)|extern "C"|no_mangle' \
   'the core has a foreign interface or unsafe code' $core
 forbid 'std::(fs|net)|(^|[^a-z])e?print(ln)?!' 'the core reads, writes or prints' $core
+# From the end of the way to its beginning.
 later=extraction
 for stage in tiles zipper ridge_surface.rs finish remesh midway contour sheets surface fields reading; do
   forbid "crate::($later)([^_a-z]|\$)" 'a stage of the core uses a later one' $core/$stage

@@ -141,7 +141,7 @@ fn touching(
     let in_cell = Buckets::new(cells.count(), entries)?;
     let touches = |t: u32, rim: u32| {
         let part = |t: u32| surface.source[surface.triangles[t as usize][0] as usize];
-        component(part(t)) == component(part(rim)) && touches(surface, rings, t, rim)
+        component(part(t)) == component(part(rim)) && touches_rim(surface, rings, t, rim)
     };
     let pieces = collected(among.chunks(PIECE))?;
     let mut pairs = Vec::new();
@@ -174,7 +174,7 @@ fn touching(
 }
 
 /// Whether a triangle touches one near a rim; what is no rim's own has to cross it.
-fn touches(surface: &Surface, rings: &[Ring], t: u32, rim: u32) -> bool {
+fn touches_rim(surface: &Surface, rings: &[Ring], t: u32, rim: u32) -> bool {
     let [a, b] = [t, rim].map(|t| surface.triangles[t as usize]);
     if [t, rim].iter().any(|&t| ring(surface, rings, t) == 0) {
         return touch(a, b, &surface.points, TOUCHING);

@@ -14,12 +14,12 @@ mod ends;
 mod flips;
 pub(crate) mod polylines;
 mod resample;
-pub(crate) mod ridge;
+mod ridge;
 mod slice;
 mod slices;
 mod strip;
 mod trace;
-pub(crate) mod zip;
+mod zip;
 pub(crate) mod zipped_surface;
 
 use ndarray::ArrayViewMut3;
